@@ -1,0 +1,105 @@
+// Encoded trees: what the kernels walk. Each layout has its node struct, its encoder and its checker in one file.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "boxwood/base.h"
+#include "boxwood/mesh.h"
+#include "boxwood/parallel.h"
+#include "boxwood/tree.h"
+
+namespace boxwood::layouts {
+
+enum class LayoutId { linear, wide4, wide8 };
+
+/// One row of the registry of layouts.
+struct LayoutInfo {
+  LayoutId id;
+  const char* name;     ///< "wide8"
+  const char* summary;  ///< one line that ends with what it is best for
+};
+std::span<const LayoutInfo> registry();
+Result<LayoutId> find(std::string_view name);
+const char* name(LayoutId id);
+
+/// PBRT's 32-byte node, depth first: the first child of an inner node follows it, the second is at `offset`.
+/// `count_and_axis`: bits 0-1 split axis of an inner node, bits 2-31 triangles of a leaf (0 = inner).
+struct LinearNode {
+  Box bounds;
+  std::uint32_t offset = 0;  ///< inner: second child; leaf: first triangle
+  std::uint32_t count_and_axis = 0;
+};
+static_assert(sizeof(LinearNode) == 32);
+
+/// A triangle of the linear layout: its corners in the mesh's order and its id.
+struct LinearTriangle {
+  Triangle triangle;
+  std::uint32_t primitive;
+};
+static_assert(sizeof(LinearTriangle) == 40);
+
+/// A node of up to W children, planes apart: planes[2 * axis] are the lower sides, planes[2 * axis + 1] the upper ones.
+/// Unused children have an empty box (+inf, -inf), which no ray meets, and stand behind the used ones.
+template <int W>
+struct alignas(64) WideNode {
+  float planes[6][W];
+  std::uint32_t child[W];
+};
+static_assert(sizeof(WideNode<4>) == 128 && sizeof(WideNode<8>) == 256);
+
+/// Child words of a wide node: inner = index of the node; leaf = bit 31, bits 28-30 blocks - 1, bits 0-27 first block.
+inline constexpr std::uint32_t kLeafBit = 0x80000000u;
+inline constexpr std::uint32_t kNoRoot = 0xffffffffu;
+constexpr std::uint32_t leaf_word(std::uint32_t first_block, std::uint32_t blocks) {
+  return kLeafBit | (blocks - 1) << 28 | first_block;
+}
+constexpr std::uint32_t leaf_blocks(std::uint32_t word) {
+  return (word >> 28 & 7) + 1;
+}
+constexpr std::uint32_t leaf_first(std::uint32_t word) {
+  return word & 0x0fffffff;
+}
+
+inline constexpr std::uint32_t kInvalidPrimitive = 0xffffffffu;
+
+/// Four triangles, planes apart: corner[vertex][axis][lane], corners in the mesh's order. Unused lanes are NaN, which
+/// no test accepts, with primitive kInvalidPrimitive, and stand behind the used ones.
+struct alignas(32) TriangleBlock {
+  float corner[3][3][4];
+  std::uint32_t primitive[4];
+};
+static_assert(sizeof(TriangleBlock) == 160);
+
+/// An encoded tree with its triangles. Immutable once made; read from any number of threads.
+struct Layout {
+  LayoutId id = LayoutId::wide8;
+  AlignedBuffer<std::byte> nodes;      ///< LinearNode or WideNode<W>
+  AlignedBuffer<std::byte> triangles;  ///< LinearTriangle or TriangleBlock
+  std::uint32_t root = kNoRoot;        ///< wide: child word of the root; linear: 0; kNoRoot when empty
+  Box bounds;
+  std::size_t max_stack = 0;  ///< most entries a traversal can have waiting
+  std::size_t node_count = 0, leaf_count = 0, reference_count = 0;
+
+  std::size_t bytes() const { return nodes.bytes() + triangles.bytes(); }
+};
+
+/// Encodes a binary tree as `linear` over the mesh it was built from. Errors: more nodes or triangles than the words
+/// can address, a reference past the mesh, out of memory. Deterministic, parallel, any depth.
+Result<Layout> encode_linear(const tree::BinaryTree& tree, const MeshView& mesh, Executor& executor);
+
+/// Encodes a tree of width 4 or 8 as `wide4` or `wide8`. `references` are those of the binary tree it was collapsed
+/// from. Leaves must hold 1 to 32 references. Errors as above.
+Result<Layout> encode_wide(const tree::WideTree& tree, std::span<const std::uint32_t> references, const MeshView& mesh,
+                           Executor& executor);
+
+/// Walks the encoded tree and gives the first contradiction as an error: every child box holds all triangles below it
+/// (meets them, when references are split), every word points inside the arrays, every reference is found exactly as
+/// often as in `references` with the mesh's exact corners, and no path needs more stack than max_stack.
+Status validate(const Layout& layout, std::span<const std::uint32_t> references, bool splits_references,
+                const MeshView& mesh);
+
+}  // namespace boxwood::layouts

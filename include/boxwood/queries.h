@@ -1,0 +1,84 @@
+// Ray queries: the hit record, the kernels of each layout and instruction set, and the brute-force oracle.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "boxwood/base.h"
+#include "boxwood/layouts.h"
+#include "boxwood/math.h"
+#include "boxwood/mesh.h"
+#include "boxwood/parallel.h"
+
+namespace boxwood {
+
+/// The nearest triangle on a ray. u and v are the barycentric weights of the second and third corner, so the point is
+/// (1 - u - v) * v0 + u * v1 + v * v2. Where several triangles have the same t the lowest primitive id wins.
+struct Hit {
+  float t = kInfinity;
+  float u = 0, v = 0;
+  std::uint32_t primitive = layouts::kInvalidPrimitive;
+
+  bool is_hit() const { return primitive != layouts::kInvalidPrimitive; }
+  explicit operator bool() const { return is_hit(); }
+};
+static_assert(sizeof(Hit) == 16);
+
+namespace queries {
+
+/// `robust`: watertight triangle test (Woop, Benthin and Wald 2013), exact at shared edges and vertices: a ray can't
+/// pass between triangles that share them. `fast`: Moeller and Trumbore's test (1997), which may let a ray through an
+/// edge or vertex. Both test boxes conservatively and give the same bits on every instruction set.
+enum class Mode { robust, fast };
+Result<Mode> find_mode(std::string_view name);
+const char* name(Mode mode);
+
+/// Work done by a set of rays. A node visit tests the boxes of all children of one node (linear: the node's own box); a
+/// primitive is one triangle tested.
+struct Counts {
+  std::uint64_t rays = 0, nodes = 0, leaves = 0, primitives = 0, hits = 0;
+  Counts& operator+=(const Counts& o) {
+    rays += o.rays, nodes += o.nodes, leaves += o.leaves, primitives += o.primitives, hits += o.hits;
+    return *this;
+  }
+};
+
+/// Names of the instruction sets compiled in that this processor can run, best first: of "avx512", "avx2", "sse4",
+/// "scalar" (and "neon" on ARM).
+std::vector<std::string> supported_isas();
+/// The instruction set to use: `name`, or if that is empty the environment variable BOXWOOD_ISA, or if that is not set
+/// the best one. Errors: a name that is unknown or that this processor can't run.
+Result<std::string> choose_isa(std::string_view name = {});
+
+/// The kernels of one layout, mode and instruction set. All take arrays of rays of any length and walk them one by
+/// one; outputs have the same length. Thread safe, no allocation unless the tree is unusually deep.
+struct Kernels {
+  void (*closest)(const layouts::Layout&, const Ray* rays, std::size_t count, Hit* hits, Vec3* normals);
+  void (*any)(const layouts::Layout&, const Ray* rays, std::size_t count, std::uint8_t* occluded);
+  void (*closest_counted)(const layouts::Layout&, const Ray* rays, std::size_t count, Hit* hits, Counts* per_ray);
+  void (*any_counted)(const layouts::Layout&, const Ray* rays, std::size_t count, std::uint8_t* occluded,
+                      Counts* per_ray);
+};
+/// `isa` as choose_isa gives it. `normals` may be null; else it gets the geometric normal (v1 - v0) x (v2 - v0), not
+/// normalised, zero on a miss. `per_ray` gets one entry for each ray.
+Result<Kernels> select_kernels(layouts::LayoutId layout, Mode mode, std::string_view isa);
+
+/// A closest hit by testing every triangle of the mesh in double precision (the determinant form of Moeller and
+/// Trumbore with inclusive edges; degenerate and non-finite triangles are passed over). The oracle of the tests.
+struct ExactHit {
+  double t = std::numeric_limits<double>::infinity();
+  double u = 0, v = 0;
+  std::uint32_t primitive = layouts::kInvalidPrimitive;
+  /// How clear the verdict is: for a hit, the smallest barycentric weight; a hit with less than about 1e-6 lies on an
+  /// edge or vertex, where single precision may rightly choose the neighbour.
+  double margin = 0;
+};
+ExactHit brute_force_closest(const MeshView& mesh, const Ray& ray);
+/// One triangle in double precision; t = inf when missed. Ignores [tmin, tmax].
+ExactHit exact_intersection(const Triangle& triangle, const Ray& ray);
+
+}  // namespace queries
+}  // namespace boxwood

@@ -1,0 +1,44 @@
+// Rays to measure with and pictures to look at. Link boxwood::render for this header.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "boxwood/accel.h"
+
+namespace boxwood::render {
+
+// ---- Ray sets ------------------------------------------------------------------------------------------------------
+
+/// One ray through the centre of each pixel, row by row from the top left; unit directions. Valid: 1 <= width, height
+/// <= 16384, finite view, eye != look_at, 0 < fov < 180; an `up` along the view direction is replaced by another axis.
+Result<std::vector<Ray>> primary_rays(const View& view, int width, int height);
+
+/// Origins uniform in the box, directions uniform on the sphere.
+std::vector<Ray> random_rays(const Box& bounds, std::size_t count, std::uint64_t seed);
+
+/// For each primary ray that hits: one ray from the hit point, cosine-distributed about the normal on the side the ray
+/// came from; primary rays that miss give none. Origins are lifted off the surface by a few ulps. In the order of the
+/// primary rays.
+std::vector<Ray> diffuse_rays(const Accel& accel, std::span<const Ray> primary, std::uint64_t seed);
+
+/// For each primary ray that hits: a segment of the length `radius` (in units of the mesh; 0 = a fifth of the box's
+/// diagonal), cosine-distributed like diffuse rays: ambient occlusion's question. For any-hit queries.
+std::vector<Ray> occlusion_rays(const Accel& accel, std::span<const Ray> primary, std::uint64_t seed, float radius = 0);
+
+/// 64-bit hash of a ray set, to show that two measurements traced the same rays.
+std::uint64_t hash(std::span<const Ray> rays);
+
+// ---- Pictures ------------------------------------------------------------------------------------------------------
+
+/// `normals`: shaded by the angle to the viewer, tinted by the normal. `ao`: ambient occlusion, 16 rays a pixel.
+/// `depth`: nearer is lighter. `nodes`, `primitives`: heat map of visits or triangle tests per primary ray, with a
+/// colour scale and its numbers drawn into the picture. `ids`: a colour per triangle.
+enum class Shade { normals, ao, depth, nodes, primitives, ids };
+Result<Shade> find_shade(std::string_view name);
+
+/// Traces one primary ray a pixel on the accel's executor. Errors: those of primary_rays.
+Result<Image> render(const Accel& accel, const View& view, int width, int height, Shade shade);
+
+}  // namespace boxwood::render

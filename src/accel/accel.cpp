@@ -1,0 +1,176 @@
+// Accel runs the pipeline: mesh -> references -> builder -> (wide tree) -> layout, and hands rays to its kernels.
+#include "boxwood/accel.h"
+
+#include "boxwood/metrics.h"
+#include "boxwood/optimizers.h"
+
+namespace boxwood {
+namespace {
+
+/// Rays a worker takes at a time: enough to make the hand-over free, few enough to share out uneven work.
+constexpr std::size_t kRaysPerChunk = 1024;
+
+Result<layouts::Layout> encode(layouts::LayoutId id, const tree::BinaryTree& tree, const MeshView& mesh,
+                               Executor& executor) {
+  if (id == layouts::LayoutId::linear) return layouts::encode_linear(tree, mesh, executor);
+  optimizers::CollapseOptions options;
+  options.width = id == layouts::LayoutId::wide4 ? 4 : 8;
+  auto wide = optimizers::collapse_to_wide(tree, options, executor);
+  if (!wide) return wide.error();
+  return layouts::encode_wide(*wide, tree.references.span(), mesh, executor);
+}
+
+Status same_length(std::size_t rays, std::size_t results, const char* what) {
+  if (rays == results) return {};
+  return {ErrorCode::invalid_argument,
+          "there are " + std::to_string(rays) + " rays but room for " + std::to_string(results) + " " + what};
+}
+
+}  // namespace
+
+struct Accel::State {
+  layouts::Layout layout;
+  queries::Kernels robust, fast;
+  std::string isa;
+  std::shared_ptr<Executor> executor;
+  std::size_t excluded = 0;
+
+  const queries::Kernels& kernels(queries::Mode mode) const { return mode == queries::Mode::robust ? robust : fast; }
+};
+
+Accel::Accel(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Accel::Accel(Accel&&) noexcept = default;
+Accel& Accel::operator=(Accel&&) noexcept = default;
+Accel::~Accel() = default;
+
+Result<Accel> Accel::build(const MeshView& mesh, const AccelOptions& options) {
+  try {
+    AccelOptions resolved = options;
+    if (!resolved.executor) resolved.executor = std::make_shared<ThreadExecutor>();
+    // Fail on a misspelt option before the work, not after it.
+    if (auto layout = layouts::find(options.layout); !layout) return layout.error();
+    if (auto isa = queries::choose_isa(options.isa); !isa) return isa.error();
+    auto references = refs::make_references(mesh, *resolved.executor);
+    if (!references) return references.error();
+    const std::size_t excluded = references->excluded;
+    auto tree = builders::build(std::move(*references), options.build, {*resolved.executor});
+    if (!tree) return tree.error();
+    auto accel = from_tree(mesh, *tree, resolved);
+    if (accel) accel->state_->excluded = excluded;
+    return accel;
+  } catch (const std::bad_alloc&) {
+    return {ErrorCode::out_of_memory,
+            "not enough memory to build over " + std::to_string(mesh.triangle_count) + " triangles"};
+  }
+}
+
+Result<Accel> Accel::from_tree(const MeshView& mesh, const tree::BinaryTree& tree, const AccelOptions& options) {
+  try {
+    auto state = std::make_unique<State>();
+    state->executor = options.executor ? options.executor : std::make_shared<ThreadExecutor>();
+    auto id = layouts::find(options.layout);
+    if (!id) return id.error();
+    auto isa = queries::choose_isa(options.isa);
+    if (!isa) return isa.error();
+    auto robust = queries::select_kernels(*id, queries::Mode::robust, *isa);
+    auto fast = queries::select_kernels(*id, queries::Mode::fast, *isa);
+    if (!robust) return robust.error();
+    if (!fast) return fast.error();
+    auto layout = encode(*id, tree, mesh, *state->executor);
+    if (!layout) return layout.error();
+    state->layout = std::move(*layout);
+    state->robust = *robust;
+    state->fast = *fast;
+    state->isa = *isa;
+    return Accel(std::move(state));
+  } catch (const std::bad_alloc&) {
+    return {ErrorCode::out_of_memory,
+            "not enough memory to encode a tree of " + std::to_string(tree.nodes.size()) + " nodes"};
+  }
+}
+
+Hit Accel::closest_hit(const Ray& ray, queries::Mode mode) const {
+  Hit hit;
+  state_->kernels(mode).closest(state_->layout, &ray, 1, &hit, nullptr);
+  return hit;
+}
+
+SurfaceHit Accel::closest_surface_hit(const Ray& ray, queries::Mode mode) const {
+  SurfaceHit hit;
+  state_->kernels(mode).closest(state_->layout, &ray, 1, &hit, &hit.normal);
+  return hit;
+}
+
+bool Accel::any_hit(const Ray& ray, queries::Mode mode) const {
+  std::uint8_t occluded = 0;
+  state_->kernels(mode).any(state_->layout, &ray, 1, &occluded);
+  return occluded != 0;
+}
+
+Status Accel::closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<Vec3> normals,
+                           queries::Mode mode) const {
+  if (auto s = same_length(rays.size(), hits.size(), "hits"); !s) return s;
+  if (!normals.empty())
+    if (auto s = same_length(rays.size(), normals.size(), "normals"); !s) return s;
+  const auto kernel = state_->kernels(mode).closest;
+  state_->executor->for_chunks(rays.size(), kRaysPerChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+    kernel(state_->layout, rays.data() + begin, end - begin, hits.data() + begin,
+           normals.empty() ? nullptr : normals.data() + begin);
+  });
+  return {};
+}
+
+Status Accel::any_hits(std::span<const Ray> rays, std::span<std::uint8_t> occluded, queries::Mode mode) const {
+  if (auto s = same_length(rays.size(), occluded.size(), "answers"); !s) return s;
+  const auto kernel = state_->kernels(mode).any;
+  state_->executor->for_chunks(rays.size(), kRaysPerChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+    kernel(state_->layout, rays.data() + begin, end - begin, occluded.data() + begin);
+  });
+  return {};
+}
+
+Status Accel::closest_hits_counted(std::span<const Ray> rays, std::span<Hit> hits, std::span<queries::Counts> per_ray,
+                                   queries::Mode mode) const {
+  if (auto s = same_length(rays.size(), hits.size(), "hits"); !s) return s;
+  if (auto s = same_length(rays.size(), per_ray.size(), "counts"); !s) return s;
+  const auto kernel = state_->kernels(mode).closest_counted;
+  state_->executor->for_chunks(rays.size(), kRaysPerChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+    kernel(state_->layout, rays.data() + begin, end - begin, hits.data() + begin, per_ray.data() + begin);
+  });
+  return {};
+}
+
+Status Accel::any_hits_counted(std::span<const Ray> rays, std::span<std::uint8_t> occluded,
+                               std::span<queries::Counts> per_ray, queries::Mode mode) const {
+  if (auto s = same_length(rays.size(), occluded.size(), "answers"); !s) return s;
+  if (auto s = same_length(rays.size(), per_ray.size(), "counts"); !s) return s;
+  const auto kernel = state_->kernels(mode).any_counted;
+  state_->executor->for_chunks(rays.size(), kRaysPerChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+    kernel(state_->layout, rays.data() + begin, end - begin, occluded.data() + begin, per_ray.data() + begin);
+  });
+  return {};
+}
+
+Box Accel::bounds() const {
+  return state_->layout.bounds;
+}
+std::size_t Accel::bytes() const {
+  return sizeof(Accel) + sizeof(State) + state_->layout.bytes();
+}
+std::size_t Accel::reference_count() const {
+  return state_->layout.reference_count;
+}
+std::size_t Accel::excluded_count() const {
+  return state_->excluded;
+}
+const std::string& Accel::isa() const {
+  return state_->isa;
+}
+const layouts::Layout& Accel::layout() const {
+  return state_->layout;
+}
+Executor& Accel::executor() const {
+  return *state_->executor;
+}
+
+}  // namespace boxwood

@@ -1,0 +1,35 @@
+// The only list of layouts.
+#include "boxwood/layouts.h"
+
+namespace boxwood::layouts {
+namespace {
+
+constexpr LayoutInfo kLayouts[] = {
+    {LayoutId::linear, "linear", "PBRT's 32-byte binary nodes, scalar code; best for reading, porting and counting"},
+    {LayoutId::wide4, "wide4", "128-byte nodes of 4 children, tested at once; best for 128-bit SIMD and small memory"},
+    {LayoutId::wide8, "wide8",
+     "256-byte nodes of 8 children, tested at once; best for speed with AVX2 and up (default)"},
+};
+
+}  // namespace
+
+std::span<const LayoutInfo> registry() {
+  return kLayouts;
+}
+
+Result<LayoutId> find(std::string_view name) {
+  std::string known;
+  for (const LayoutInfo& row : kLayouts) {
+    if (name == row.name) return row.id;
+    known += std::string(known.empty() ? "" : ", ") + row.name;
+  }
+  return {ErrorCode::unknown_name, "unknown layout '" + std::string(name) + "'; there are: " + known};
+}
+
+const char* name(LayoutId id) {
+  for (const LayoutInfo& row : kLayouts)
+    if (row.id == id) return row.name;
+  return "?";
+}
+
+}  // namespace boxwood::layouts

@@ -1,0 +1,160 @@
+// The checker of encoded trees: decodes every node and triangle and holds them against the tree and the mesh.
+#include <cstring>
+#include <vector>
+
+#include "boxwood/layouts.h"
+#include "layouts/encode.h"
+
+namespace boxwood::layouts {
+namespace {
+
+/// One decoded entry of the walk: a node or leaf with the box its parent gives it.
+struct Item {
+  std::uint32_t word;
+  Box box;
+  std::size_t waiting;  // entries on a traversal's stack when it comes here
+};
+
+class Checker {
+ public:
+  Checker(const Layout& layout, bool splits, const MeshView& mesh)
+      : layout_(layout), splits_(splits), mesh_(mesh), seen_(mesh.triangle_count, 0) {}
+
+  Status run(std::span<const std::uint32_t> references) {
+    if (layout_.root == kNoRoot) {
+      if (!references.empty() || layout_.node_count)
+        return bad("it has no root but " + std::to_string(references.size()) + " references");
+      return {};
+    }
+    for (std::uint32_t id : references) {
+      if (id >= seen_.size()) return bad("reference " + std::to_string(id) + " is past the mesh");
+      --seen_[id];
+    }
+    stack_.push_back({layout_.root, layout_.bounds, 0});
+    while (!stack_.empty()) {
+      const Item item = stack_.back();
+      stack_.pop_back();
+      Status status = layout_.id == LayoutId::linear  ? linear(item)
+                      : layout_.id == LayoutId::wide4 ? wide<4>(item)
+                                                      : wide<8>(item);
+      if (!status) return status;
+    }
+    if (nodes_ != layout_.node_count)
+      return bad(std::to_string(nodes_) + " nodes can be reached, node_count says " +
+                 std::to_string(layout_.node_count));
+    for (std::size_t id = 0; id < seen_.size(); ++id)
+      if (seen_[id] != 0)
+        return bad("triangle " + std::to_string(id) + " stands " + std::to_string(std::abs(seen_[id])) +
+                   (seen_[id] < 0 ? " times too rarely" : " times too often"));
+    return {};
+  }
+
+ private:
+  static Status bad(std::string what) { return {ErrorCode::malformed, "invalid layout: " + std::move(what)}; }
+
+  Status triangle(const Triangle& t, std::uint32_t id, const Box& box) {
+    if (id >= mesh_.triangle_count) return bad("triangle id " + std::to_string(id) + " is past the mesh");
+    ++seen_[id];
+    const Triangle expected = mesh_.triangle(id);
+    if (std::memcmp(&t, &expected, sizeof t) != 0)
+      return bad("triangle " + std::to_string(id) + " differs from the mesh's");
+    const Box b = t.bounds();
+    const bool meets = minimum(b.upper, box.upper) == maximum(minimum(b.upper, box.upper), maximum(b.lower, box.lower));
+    if (splits_ ? !meets : !box.contains(b))
+      return bad("triangle " + std::to_string(id) + " sticks out of its leaf's box");
+    return {};
+  }
+
+  Status linear(const Item& item) {
+    if (item.word >= layout_.nodes.size() / sizeof(LinearNode))
+      return bad("node " + std::to_string(item.word) + " is past the array");
+    const auto& node = reinterpret_cast<const LinearNode*>(layout_.nodes.data())[item.word];
+    ++nodes_;
+    if (!item.box.contains(node.bounds)) return bad("node " + std::to_string(item.word) + " sticks out of its parent");
+    const std::uint32_t count = node.count_and_axis >> 2;
+    if (count == 0) {
+      if (node.offset <= item.word + 1)
+        return bad("second child of node " + std::to_string(item.word) + " does not follow it");
+      if (item.waiting + 1 > layout_.max_stack) return bad("max_stack is too small");
+      stack_.push_back({node.offset, node.bounds, item.waiting});
+      stack_.push_back({item.word + 1, node.bounds, item.waiting + 1});
+      return {};
+    }
+    if (node.offset + std::size_t{count} > layout_.triangles.size() / sizeof(LinearTriangle))
+      return bad("leaf " + std::to_string(item.word) + " reaches past the triangles");
+    const auto* triangles = reinterpret_cast<const LinearTriangle*>(layout_.triangles.data()) + node.offset;
+    for (std::uint32_t i = 0; i < count; ++i)
+      if (Status s = triangle(triangles[i].triangle, triangles[i].primitive, node.bounds); !s) return s;
+    return {};
+  }
+
+  Status leaf(const Item& item) {
+    const std::size_t first = leaf_first(item.word), count = leaf_blocks(item.word);
+    if (first + count > layout_.triangles.size() / sizeof(TriangleBlock)) return bad("a leaf reaches past the blocks");
+    const auto* blocks = reinterpret_cast<const TriangleBlock*>(layout_.triangles.data()) + first;
+    for (std::size_t b = 0; b < count; ++b) {
+      const TriangleBlock& block = blocks[b];
+      for (int lane = 0; lane < 4; ++lane) {
+        if (block.primitive[lane] == kInvalidPrimitive) {
+          if (lane == 0 || b + 1 != count || !std::isnan(block.corner[0][0][lane]))
+            return bad("an unused lane is not at a leaf's end");
+          continue;
+        }
+        Triangle t;
+        for (int axis = 0; axis < 3; ++axis) {
+          t.v0[axis] = block.corner[0][axis][lane];
+          t.v1[axis] = block.corner[1][axis][lane];
+          t.v2[axis] = block.corner[2][axis][lane];
+        }
+        if (Status s = triangle(t, block.primitive[lane], item.box); !s) return s;
+      }
+    }
+    return {};
+  }
+
+  template <int W>
+  Status wide(const Item& item) {
+    if (item.word & kLeafBit) return leaf(item);
+    if (item.word >= layout_.nodes.size() / sizeof(WideNode<W>))
+      return bad("node " + std::to_string(item.word) + " is past the array");
+    const auto& node = reinterpret_cast<const WideNode<W>*>(layout_.nodes.data())[item.word];
+    ++nodes_;
+    int used = 0;
+    for (int i = 0; i < W; ++i) {
+      const Box box{{node.planes[0][i], node.planes[2][i], node.planes[4][i]},
+                    {node.planes[1][i], node.planes[3][i], node.planes[5][i]}};
+      if (box.is_empty()) continue;
+      if (used != i) return bad("an unused child of node " + std::to_string(item.word) + " stands before a used one");
+      if (!item.box.contains(box))
+        return bad("child " + std::to_string(i) + " of node " + std::to_string(item.word) + " sticks out");
+      if (!(node.child[i] & kLeafBit) && node.child[i] <= item.word)
+        return bad("child " + std::to_string(i) + " of node " + std::to_string(item.word) + " stands before it");
+      ++used;
+    }
+    if (used == 0) return bad("node " + std::to_string(item.word) + " has no children");
+    const std::size_t waiting = item.waiting + static_cast<std::size_t>(used) - 1;
+    if (waiting + 1 > layout_.max_stack) return bad("max_stack is too small");
+    for (int i = 0; i < used; ++i)
+      stack_.push_back({node.child[i],
+                        Box{{node.planes[0][i], node.planes[2][i], node.planes[4][i]},
+                            {node.planes[1][i], node.planes[3][i], node.planes[5][i]}},
+                        waiting});
+    return {};
+  }
+
+  const Layout& layout_;
+  const bool splits_;
+  const MeshView& mesh_;
+  std::vector<std::int64_t> seen_;  // times found minus times expected
+  std::vector<Item> stack_;
+  std::size_t nodes_ = 0;
+};
+
+}  // namespace
+
+Status validate(const Layout& layout, std::span<const std::uint32_t> references, bool splits_references,
+                const MeshView& mesh) {
+  return guard_memory([&]() -> Status { return Checker(layout, splits_references, mesh).run(references); });
+}
+
+}  // namespace boxwood::layouts

@@ -1,0 +1,99 @@
+// Which instruction set runs: names, detection, the environment variable, and the way from a layout to its kernels.
+#include <cstdlib>
+
+#include "queries/kernels/targets.h"
+// targets.h first: it sets which targets Highway's headers see.
+#include <hwy/targets.h>
+
+#include "queries/kernels/kernels.h"
+
+namespace boxwood::queries {
+namespace {
+
+struct Isa {
+  const char* name;
+  std::int64_t target;
+};
+
+// Best first. The last one runs everywhere.
+constexpr Isa kIsas[] = {
+#if HWY_ARCH_X86
+    {"avx512", HWY_AVX3},
+    {"avx2", HWY_AVX2},
+    {"sse4", HWY_SSE4},
+#elif HWY_ARCH_ARM
+    {"neon", HWY_NEON},
+#endif
+    {"scalar", HWY_BASELINE_SCALAR},
+};
+
+bool runs_here(const Isa& isa) {
+  return isa.target == HWY_BASELINE_SCALAR || (hwy::SupportedTargets() & HWY_TARGETS & isa.target) != 0;
+}
+
+const Isa* find_isa(std::string_view name) {
+  for (const Isa& isa : kIsas)
+    if (name == isa.name) return &isa;
+  return nullptr;
+}
+
+std::string join(const std::vector<std::string>& words) {
+  std::string text;
+  for (const auto& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+}  // namespace
+
+Result<Mode> find_mode(std::string_view text) {
+  for (Mode mode : {Mode::robust, Mode::fast})
+    if (text == name(mode)) return mode;
+  return {ErrorCode::unknown_name, "unknown mode '" + std::string(text) + "'; there are: robust, fast"};
+}
+
+const char* name(Mode mode) {
+  return mode == Mode::robust ? "robust" : "fast";
+}
+
+std::vector<std::string> supported_isas() {
+  std::vector<std::string> names;
+  for (const Isa& isa : kIsas)
+    if (runs_here(isa)) names.emplace_back(isa.name);
+  return names;
+}
+
+Result<std::string> choose_isa(std::string_view wanted) {
+  std::string name(wanted);
+  std::string source = "instruction set";
+  if (name.empty()) {
+    if (const char* variable = std::getenv("BOXWOOD_ISA"); variable && *variable) {
+      name = variable;
+      source = "instruction set in BOXWOOD_ISA";
+    }
+  }
+  if (name.empty()) return supported_isas().front();
+  const Isa* isa = find_isa(name);
+  if (!isa || !runs_here(*isa))
+    return {isa ? ErrorCode::unsupported : ErrorCode::unknown_name,
+            (isa ? source + " '" + name + "' is not supported by this processor"
+                 : "unknown " + source + " '" + name + "'") +
+                "; there are: " + join(supported_isas())};
+  return name;
+}
+
+Result<Kernels> select_kernels(layouts::LayoutId layout, Mode mode, std::string_view name) {
+  const auto chosen = choose_isa(name);
+  if (!chosen) return chosen.error();
+  const std::int64_t target = find_isa(*chosen)->target;
+  switch (layout) {
+    case layouts::LayoutId::linear:
+      return linear_kernels(mode);
+    case layouts::LayoutId::wide4:
+      return wide4_kernels(mode, target);
+    case layouts::LayoutId::wide8:
+      return wide8_kernels(mode, target);
+  }
+  return {ErrorCode::unknown_name, "there is no layout number " + std::to_string(static_cast<int>(layout))};
+}
+
+}  // namespace boxwood::queries

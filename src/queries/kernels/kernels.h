@@ -1,0 +1,22 @@
+// The kernels of each layout, by Highway target bit.
+#pragma once
+
+#include <hwy/targets.h>
+
+#include "boxwood/queries.h"
+
+namespace boxwood::queries {
+
+Kernels linear_kernels(Mode mode);
+Kernels wide4_kernels(Mode mode, std::int64_t target);
+Kernels wide8_kernels(Mode mode, std::int64_t target);
+
+/// Place of a target in the tables HWY_EXPORT makes. A dispatcher of our own, so that forcing an instruction set
+/// changes nothing for other users of Highway in the process.
+inline std::size_t dispatch_index(std::int64_t target) {
+  hwy::ChosenTarget chosen;
+  chosen.Update(target);
+  return chosen.GetIndex();
+}
+
+}  // namespace boxwood::queries

@@ -1,0 +1,355 @@
+// Single-ray traversal of wide nodes (Wald, Benthin and Boulos 2008; Afra 2013), one ray at a time, nearest child
+// first. Compiled once per instruction set by the sources that include it; no include guard of the usual kind for that
+// reason.
+//
+// A node visit computes entry and exit distance of all W boxes with one fused operation per plane (see ray_setup.h for
+// why that is conservative). Of the children hit one is gone on with at once; the others wait on a stack, sorted by
+// entry distance. A waiting child is dropped when a hit nearer than its entry has been found meanwhile. All comparisons
+// are inclusive, so that of several triangles at the same t the lowest primitive id is found in whatever order they
+// come.
+#if defined(BOXWOOD_QUERIES_KERNELS_WIDE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef BOXWOOD_QUERIES_KERNELS_WIDE_INL_H_
+#undef BOXWOOD_QUERIES_KERNELS_WIDE_INL_H_
+#else
+#define BOXWOOD_QUERIES_KERNELS_WIDE_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <bit>
+#include <memory>
+
+#include "boxwood/queries.h"
+#include "queries/triangle_test.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace boxwood::queries::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using layouts::Layout;
+using layouts::TriangleBlock;
+using layouts::WideNode;
+
+/// Entries a traversal keeps on the machine's stack; a tree that needs more gets them from the heap.
+inline constexpr std::size_t kInlineStack = 256;
+
+/// The best hit so far, with where its triangle stands.
+struct Best {
+  float t, u = 0, v = 0;
+  std::uint32_t primitive = layouts::kInvalidPrimitive;
+  const TriangleBlock* block = nullptr;
+  int lane = 0;
+
+  HWY_INLINE void offer(const TriangleHit& hit, float tmin, const TriangleBlock& from, int from_lane) {
+    const std::uint32_t id = from.primitive[from_lane];
+    if (!(hit.t >= tmin && (hit.t < t || (hit.t == t && id < primitive)))) return;
+    t = hit.t, u = hit.u, v = hit.v, primitive = id, block = &from, lane = from_lane;
+  }
+};
+
+template <class D>
+HWY_INLINE auto load_relative(D d, const TriangleBlock& block, int corner, int axis, int lane, const RaySetup& ray) {
+  return hn::Sub(hn::Load(d, block.corner[corner][axis] + lane), hn::Set(d, ray.origin[axis]));
+}
+
+/// Lanes whose edge functions u, v, w have one sign. NaN lanes are out.
+template <class D, class V>
+HWY_INLINE auto same_sign(D d, V u, V v, V w) {
+  const auto zero = hn::Zero(d);
+  return hn::Or(hn::Ge(hn::Min(hn::Min(u, v), w), zero), hn::Le(hn::Max(hn::Max(u, v), w), zero));
+}
+
+/// Hands the lanes of `mask` to `best`, lowest lane first.
+template <class D, class V>
+HWY_INLINE void offer_lanes(D d, std::uint64_t mask, V t, V u, V v, const TriangleBlock& block, int first_lane,
+                            const RaySetup& ray, Best& best) {
+  alignas(64) float ts[4], us[4], vs[4];
+  hn::Store(t, d, ts);
+  hn::Store(u, d, us);
+  hn::Store(v, d, vs);
+  for (; mask; mask &= mask - 1) {
+    const int lane = std::countr_zero(mask);
+    best.offer({ts[lane], us[lane], vs[lane]}, ray.tmin, block, first_lane + lane);
+  }
+}
+
+template <class D>
+HWY_INLINE std::uint64_t mask_bits(D d, hn::Mask<D> mask) {
+  alignas(8) std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
+  return bytes[0] & ((1u << hn::Lanes(d)) - 1);
+}
+
+HWY_INLINE void robust_block(const TriangleBlock& block, const RaySetup& ray, Best& best) {
+  const hn::CappedTag<float, 4> d;
+  const int step = static_cast<int>(hn::Lanes(d));
+  const auto shear_x = hn::Set(d, ray.shear_x), shear_y = hn::Set(d, ray.shear_y);
+  for (int lane = 0; lane < 4; lane += step) {
+    const auto az = load_relative(d, block, 0, ray.kz, lane, ray);
+    const auto bz = load_relative(d, block, 1, ray.kz, lane, ray);
+    const auto cz = load_relative(d, block, 2, ray.kz, lane, ray);
+    const auto ax = hn::Sub(load_relative(d, block, 0, ray.kx, lane, ray), hn::Mul(shear_x, az));
+    const auto bx = hn::Sub(load_relative(d, block, 1, ray.kx, lane, ray), hn::Mul(shear_x, bz));
+    const auto cx = hn::Sub(load_relative(d, block, 2, ray.kx, lane, ray), hn::Mul(shear_x, cz));
+    const auto ay = hn::Sub(load_relative(d, block, 0, ray.ky, lane, ray), hn::Mul(shear_y, az));
+    const auto by = hn::Sub(load_relative(d, block, 1, ray.ky, lane, ray), hn::Mul(shear_y, bz));
+    const auto cy = hn::Sub(load_relative(d, block, 2, ray.ky, lane, ray), hn::Mul(shear_y, cz));
+    const auto u = hn::Sub(hn::Mul(cx, by), hn::Mul(cy, bx));
+    const auto v = hn::Sub(hn::Mul(ax, cy), hn::Mul(ay, cx));
+    const auto w = hn::Sub(hn::Mul(bx, ay), hn::Mul(by, ax));
+    const auto tiny = hn::Le(hn::Min(hn::Min(hn::Abs(u), hn::Abs(v)), hn::Abs(w)), hn::Set(d, kTinyEdgeFunction));
+    const std::uint64_t doubtful = mask_bits(d, tiny);
+    const std::uint64_t inside = mask_bits(d, same_sign(d, u, v, w)) & ~doubtful;
+    if (HWY_LIKELY(!(inside | doubtful))) continue;
+    if (inside) {
+      const auto r = hn::Div(hn::Set(d, 1.0f), hn::Add(hn::Add(u, v), w));
+      const auto wa = hn::Mul(u, r), wb = hn::Mul(v, r), wc = hn::Mul(w, r);
+      const auto t =
+          hn::Mul(hn::Add(hn::Add(hn::Mul(wa, az), hn::Mul(wb, bz)), hn::Mul(wc, cz)), hn::Set(d, ray.shear_z));
+      offer_lanes(d, inside, t, wb, wc, block, lane, ray, best);
+    }
+    if (HWY_UNLIKELY(doubtful)) {
+      alignas(64) float x[3][4], y[3][4], z[3][4];
+      hn::Store(ax, d, x[0]), hn::Store(bx, d, x[1]), hn::Store(cx, d, x[2]);
+      hn::Store(ay, d, y[0]), hn::Store(by, d, y[1]), hn::Store(cy, d, y[2]);
+      hn::Store(az, d, z[0]), hn::Store(bz, d, z[1]), hn::Store(cz, d, z[2]);
+      for (std::uint64_t mask = doubtful; mask; mask &= mask - 1) {
+        const int i = std::countr_zero(mask);
+        TriangleHit hit;
+        if (robust_in_double({x[0][i], x[1][i], x[2][i]}, {y[0][i], y[1][i], y[2][i]}, {z[0][i], z[1][i], z[2][i]},
+                             ray.shear_z, hit))
+          best.offer(hit, ray.tmin, block, lane + i);
+      }
+    }
+  }
+}
+
+template <class D, class V>
+HWY_INLINE V dot_without_fusing(D, V ax, V ay, V az, V bx, V by, V bz) {
+  return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));
+}
+
+template <class D>
+HWY_INLINE auto edge(D d, const TriangleBlock& block, int corner, int axis, int lane) {
+  return hn::Sub(hn::Load(d, block.corner[corner][axis] + lane), hn::Load(d, block.corner[0][axis] + lane));
+}
+
+HWY_INLINE void fast_block(const TriangleBlock& block, const RaySetup& ray, Best& best) {
+  const hn::CappedTag<float, 4> d;
+  const int step = static_cast<int>(hn::Lanes(d));
+  const auto dx = hn::Set(d, ray.direction[0]), dy = hn::Set(d, ray.direction[1]), dz = hn::Set(d, ray.direction[2]);
+  for (int lane = 0; lane < 4; lane += step) {
+    const auto e1x = edge(d, block, 1, 0, lane), e1y = edge(d, block, 1, 1, lane), e1z = edge(d, block, 1, 2, lane);
+    const auto e2x = edge(d, block, 2, 0, lane), e2y = edge(d, block, 2, 1, lane), e2z = edge(d, block, 2, 2, lane);
+    const auto px = hn::Sub(hn::Mul(dy, e2z), hn::Mul(dz, e2y));
+    const auto py = hn::Sub(hn::Mul(dz, e2x), hn::Mul(dx, e2z));
+    const auto pz = hn::Sub(hn::Mul(dx, e2y), hn::Mul(dy, e2x));
+    const auto determinant = dot_without_fusing(d, e1x, e1y, e1z, px, py, pz);
+    const auto sx = hn::Sub(hn::Set(d, ray.origin[0]), hn::Load(d, block.corner[0][0] + lane));
+    const auto sy = hn::Sub(hn::Set(d, ray.origin[1]), hn::Load(d, block.corner[0][1] + lane));
+    const auto sz = hn::Sub(hn::Set(d, ray.origin[2]), hn::Load(d, block.corner[0][2] + lane));
+    const auto qx = hn::Sub(hn::Mul(sy, e1z), hn::Mul(sz, e1y));
+    const auto qy = hn::Sub(hn::Mul(sz, e1x), hn::Mul(sx, e1z));
+    const auto qz = hn::Sub(hn::Mul(sx, e1y), hn::Mul(sy, e1x));
+    const auto u = dot_without_fusing(d, sx, sy, sz, px, py, pz);
+    const auto v = dot_without_fusing(d, dx, dy, dz, qx, qy, qz);
+    const auto w = hn::Sub(hn::Sub(determinant, u), v);
+    const std::uint64_t inside = mask_bits(d, hn::And(same_sign(d, u, v, w), hn::Ne(determinant, hn::Zero(d))));
+    if (HWY_LIKELY(!inside)) continue;
+    const auto r = hn::Div(hn::Set(d, 1.0f), determinant);
+    const auto t = hn::Mul(dot_without_fusing(d, e2x, e2y, e2z, qx, qy, qz), r);
+    offer_lanes(d, inside, t, hn::Mul(u, r), hn::Mul(v, r), block, lane, ray, best);
+  }
+}
+
+/// Children of a node that the ray meets within [tmin, tmax], as bits, with their entry distances.
+template <int W>
+HWY_INLINE std::uint32_t test_boxes(const WideNode<W>& node, const RaySetup& ray, float tmax, float* entry) {
+  const hn::CappedTag<float, W> d;
+  const int step = static_cast<int>(hn::Lanes(d));
+  std::uint32_t hit = 0;
+  for (int i = 0; i < W; i += step) {
+    const auto rx = hn::Set(d, ray.reciprocal[0]), ry = hn::Set(d, ray.reciprocal[1]),
+               rz = hn::Set(d, ray.reciprocal[2]);
+    const auto x0 = hn::MulAdd(hn::Load(d, node.planes[ray.entry_plane[0]] + i), rx, hn::Set(d, ray.entry_add[0]));
+    const auto y0 = hn::MulAdd(hn::Load(d, node.planes[ray.entry_plane[1]] + i), ry, hn::Set(d, ray.entry_add[1]));
+    const auto z0 = hn::MulAdd(hn::Load(d, node.planes[ray.entry_plane[2]] + i), rz, hn::Set(d, ray.entry_add[2]));
+    const auto x1 = hn::MulAdd(hn::Load(d, node.planes[ray.exit_plane[0]] + i), rx, hn::Set(d, ray.exit_add[0]));
+    const auto y1 = hn::MulAdd(hn::Load(d, node.planes[ray.exit_plane[1]] + i), ry, hn::Set(d, ray.exit_add[1]));
+    const auto z1 = hn::MulAdd(hn::Load(d, node.planes[ray.exit_plane[2]] + i), rz, hn::Set(d, ray.exit_add[2]));
+    const auto near = hn::Max(hn::Max(x0, y0), hn::Max(z0, hn::Set(d, ray.tmin)));
+    const auto far = hn::Min(hn::Min(x1, y1), hn::Min(z1, hn::Set(d, tmax)));
+    hn::Store(near, d, entry + i);
+    hit |= static_cast<std::uint32_t>(mask_bits(d, hn::Le(near, far))) << i;
+  }
+  return hit;
+}
+
+/// A waiting child: entry distance in the high half, child word in the low half. Distances are not negative, so their
+/// bits order like the numbers, and one integer comparison orders entries (equal distances by word).
+using StackEntry = std::uint64_t;
+HWY_INLINE StackEntry make_entry(float near, std::uint32_t word) {
+  return std::uint64_t{std::bit_cast<std::uint32_t>(near)} << 32 | word;
+}
+HWY_INLINE float entry_distance(StackEntry e) {
+  return std::bit_cast<float>(static_cast<std::uint32_t>(e >> 32));
+}
+
+/// Puts the children of `hit` on the stack, farthest first, and takes the nearest off again.
+template <int W, bool kAny>
+HWY_INLINE std::uint32_t push_children(const WideNode<W>& node, std::uint32_t hit, const float* entry,
+                                       StackEntry*& top) {
+  const int a = std::countr_zero(hit);
+  hit &= hit - 1;
+  if (HWY_LIKELY(!hit)) return node.child[a];
+  if constexpr (kAny) {
+    for (; hit; hit &= hit - 1) {
+      const int i = std::countr_zero(hit);
+      *top++ = make_entry(entry[i], node.child[i]);
+    }
+    return node.child[a];
+  }
+  const int b = std::countr_zero(hit);
+  hit &= hit - 1;
+  StackEntry first = make_entry(entry[a], node.child[a]), second = make_entry(entry[b], node.child[b]);
+  if (second < first) std::swap(first, second);
+  if (HWY_LIKELY(!hit)) {
+    *top++ = second;
+    return static_cast<std::uint32_t>(first);
+  }
+  StackEntry* const base = top;
+  *top++ = second;
+  *top++ = first;
+  for (; hit; hit &= hit - 1) {
+    const int i = std::countr_zero(hit);
+    const StackEntry e = make_entry(entry[i], node.child[i]);
+    StackEntry* place = top++;
+    for (; place != base && place[-1] < e; --place) place[0] = place[-1];
+    *place = e;
+  }
+  return static_cast<std::uint32_t>(*--top);
+}
+
+template <int W, bool kRobust, bool kAny, bool kCount>
+HWY_INLINE bool traverse(const Layout& layout, const RaySetup& ray, StackEntry* const stack, Best& best,
+                         Counts* counts) {
+  const auto* nodes = reinterpret_cast<const WideNode<W>*>(layout.nodes.data());
+  const auto* blocks = reinterpret_cast<const TriangleBlock*>(layout.triangles.data());
+  StackEntry* top = stack;
+  std::uint32_t word = layout.root;
+  alignas(64) float entry[W];
+  for (;;) {
+    if (word & layouts::kLeafBit) {
+      const TriangleBlock* block = blocks + layouts::leaf_first(word);
+      const TriangleBlock* const end = block + layouts::leaf_blocks(word);
+      if constexpr (kCount) {
+        ++counts->leaves;
+        for (const TriangleBlock* b = block; b != end; ++b)
+          for (std::uint32_t id : b->primitive) counts->primitives += id != layouts::kInvalidPrimitive;
+      }
+      for (; block != end; ++block) {
+        if constexpr (kRobust)
+          robust_block(*block, ray, best);
+        else
+          fast_block(*block, ray, best);
+        if (kAny && best.block) return true;
+      }
+    } else {
+      const WideNode<W>& node = nodes[word];
+      if constexpr (kCount) ++counts->nodes;
+      const std::uint32_t hit = test_boxes<W>(node, ray, best.t, entry);
+      if (hit) {
+        word = push_children<W, kAny>(node, hit, entry, top);
+        continue;
+      }
+    }
+    do {
+      if (top == stack) return best.block != nullptr;
+      --top;
+    } while (!kAny && entry_distance(*top) > best.t);
+    word = static_cast<std::uint32_t>(*top);
+  }
+}
+
+/// Runs one ray with a stack that is large enough and reports through `done(best, setup)`.
+template <int W, bool kRobust, bool kAny, bool kCount>
+HWY_INLINE bool trace(const Layout& layout, const Ray& ray, RaySetup& setup, Best& best, StackEntry* stack,
+                      Counts* counts) {
+  if constexpr (kCount) counts->rays = 1;
+  if (layout.root == layouts::kNoRoot || !set_up(ray, layout.bounds, setup)) return false;
+  best.t = setup.tmax;
+  const bool hit = traverse<W, kRobust, kAny, kCount>(layout, setup, stack, best, counts);
+  if constexpr (kCount) counts->hits = hit;
+  return hit;
+}
+
+/// The stack of one call: on the machine's stack unless the tree is unusually deep.
+class Stack {
+ public:
+  explicit Stack(std::size_t needed) {
+    if (needed > kInlineStack) heap_ = std::make_unique_for_overwrite<StackEntry[]>(needed);
+  }
+  StackEntry* data() { return heap_ ? heap_.get() : inline_; }
+
+ private:
+  StackEntry inline_[kInlineStack];
+  std::unique_ptr<StackEntry[]> heap_;
+};
+
+template <int W, bool kRobust, bool kCount>
+void closest(const Layout& layout, const Ray* rays, std::size_t count, Hit* hits, Vec3* normals, Counts* per_ray) {
+  Stack stack(layout.max_stack + W);
+  for (std::size_t i = 0; i < count; ++i) {
+    RaySetup setup;
+    Best best;
+    if constexpr (kCount) per_ray[i] = {};
+    const bool hit =
+        trace<W, kRobust, false, kCount>(layout, rays[i], setup, best, stack.data(), kCount ? per_ray + i : nullptr);
+    hits[i] = hit ? Hit{best.t * setup.t_scale, best.u, best.v, best.primitive} : Hit{};
+    if (!normals) continue;
+    normals[i] = {};
+    if (!hit) continue;
+    Triangle t;
+    for (int axis = 0; axis < 3; ++axis) {
+      t.v0[axis] = best.block->corner[0][axis][best.lane];
+      t.v1[axis] = best.block->corner[1][axis][best.lane];
+      t.v2[axis] = best.block->corner[2][axis][best.lane];
+    }
+    normals[i] = t.normal();
+  }
+}
+
+template <int W, bool kRobust, bool kCount>
+void any(const Layout& layout, const Ray* rays, std::size_t count, std::uint8_t* occluded, Counts* per_ray) {
+  Stack stack(layout.max_stack + W);
+  for (std::size_t i = 0; i < count; ++i) {
+    RaySetup setup;
+    Best best;
+    if constexpr (kCount) per_ray[i] = {};
+    occluded[i] =
+        trace<W, kRobust, true, kCount>(layout, rays[i], setup, best, stack.data(), kCount ? per_ray + i : nullptr);
+  }
+}
+
+template <int W, bool kRobust>
+Kernels make_kernels() {
+  return {
+      [](const Layout& l, const Ray* r, std::size_t n, Hit* h, Vec3* normals) {
+        closest<W, kRobust, false>(l, r, n, h, normals, nullptr);
+      },
+      [](const Layout& l, const Ray* r, std::size_t n, std::uint8_t* o) {
+        any<W, kRobust, false>(l, r, n, o, nullptr);
+      },
+      [](const Layout& l, const Ray* r, std::size_t n, Hit* h, Counts* c) {
+        closest<W, kRobust, true>(l, r, n, h, nullptr, c);
+      },
+      [](const Layout& l, const Ray* r, std::size_t n, std::uint8_t* o, Counts* c) {
+        any<W, kRobust, true>(l, r, n, o, c);
+      },
+  };
+}
+
+}  // namespace boxwood::queries::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard
