@@ -13,7 +13,8 @@ function(boxwood_add_library target exported)
   endforeach()
   add_library(${target} ${sources})
   add_library(boxwood::${exported} ALIAS ${target})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${exported} VERIFY_INTERFACE_HEADER_SETS ON)
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${exported} VERIFY_INTERFACE_HEADER_SETS ON
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/include FILES ${headers})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_compile_features(${target} PUBLIC cxx_std_20)
@@ -24,4 +25,8 @@ endfunction()
 function(boxwood_compile_options target)
   # Without contraction a * b + c rounds twice everywhere, so results do not depend on the instruction set.
   target_compile_options(${target} PRIVATE -Wall -Wextra -ffp-contract=off $<$<CONFIG:Release>:-O3>)
+  # g++ 12 warns of every "text" + std::string, wrongly.
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    target_compile_options(${target} PRIVATE -Wno-restrict)
+  endif()
 endfunction()

@@ -15,16 +15,20 @@ namespace boxwood::render {
 /// <= 16384, finite view, eye != look_at, 0 < fov < 180; an `up` along the view direction is replaced by another axis.
 Result<std::vector<Ray>> primary_rays(const View& view, int width, int height);
 
-/// Origins uniform in the box, directions uniform on the sphere.
+// The functions that return rays without a Result throw std::bad_alloc when memory runs out.
+
+/// Origins uniform in the box, directions uniform on the sphere. A box that is empty or not finite has no points to
+/// start from and gives no rays.
 std::vector<Ray> random_rays(const Box& bounds, std::size_t count, std::uint64_t seed);
 
 /// For each primary ray that hits: one ray from the hit point, cosine-distributed about the normal on the side the ray
-/// came from; primary rays that miss give none. Origins are lifted off the surface by a few ulps. In the order of the
-/// primary rays.
+/// came from; primary rays that miss give none. Origins are lifted off the surface by a few ulps, by more
+/// where a sliver's ray would still meet its own triangle. In the order of the primary rays.
 std::vector<Ray> diffuse_rays(const Accel& accel, std::span<const Ray> primary, std::uint64_t seed);
 
 /// For each primary ray that hits: a segment of the length `radius` (in units of the mesh; 0 = a fifth of the box's
-/// diagonal), cosine-distributed like diffuse rays: ambient occlusion's question. For any-hit queries.
+/// diagonal, and so are values that are not above 0), cosine-distributed like diffuse rays: ambient occlusion's
+/// question. For any-hit queries.
 std::vector<Ray> occlusion_rays(const Accel& accel, std::span<const Ray> primary, std::uint64_t seed, float radius = 0);
 
 /// 64-bit hash of a ray set, to show that two measurements traced the same rays.
@@ -32,9 +36,10 @@ std::uint64_t hash(std::span<const Ray> rays);
 
 // ---- Pictures ------------------------------------------------------------------------------------------------------
 
-/// `normals`: shaded by the angle to the viewer, tinted by the normal. `ao`: ambient occlusion, 16 rays a pixel.
-/// `depth`: nearer is lighter. `nodes`, `primitives`: heat map of visits or triangle tests per primary ray, with a
-/// colour scale and its numbers drawn into the picture. `ids`: a colour per triangle.
+/// `normals`: shaded by the angle to the viewer, tinted by the normal. `ao`: ambient occlusion, 16 rays a pixel,
+/// smoothed over neighbours on the same surface. `depth`: nearer is lighter. `nodes`, `primitives`: heat map of visits
+/// or triangle tests per primary ray, with a colour scale and its numbers drawn into the picture. `ids`: a colour per
+/// triangle.
 enum class Shade { normals, ao, depth, nodes, primitives, ids };
 Result<Shade> find_shade(std::string_view name);
 

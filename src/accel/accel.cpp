@@ -15,6 +15,9 @@ Result<layouts::Layout> encode(layouts::LayoutId id, const tree::BinaryTree& tre
   if (id == layouts::LayoutId::linear) return layouts::encode_linear(tree, mesh, executor);
   optimizers::CollapseOptions options;
   options.width = id == layouts::LayoutId::wide4 ? 4 : 8;
+  // A node visit costs about one and a half block tests in the kernels; the surface area cost decides on leaf sizes.
+  options.node_cost = 1.5f;
+  options.max_leaf_blocks = 4;
   auto wide = optimizers::collapse_to_wide(tree, options, executor);
   if (!wide) return wide.error();
   return layouts::encode_wide(*wide, tree.references.span(), mesh, executor);

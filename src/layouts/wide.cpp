@@ -38,9 +38,41 @@ void fill_node(WideNode<W>& node, std::span<const tree::WideTree::Child> childre
   }
 }
 
+/// References below each child. Children's nodes stand behind their parents, so one backward pass is enough.
+std::vector<std::uint32_t> count_references(const tree::WideTree& tree) {
+  std::vector<std::uint32_t> below(tree.children.size());
+  for (std::size_t node = tree.first_child.size() - 1; node-- > 0;)
+    for (std::size_t c = tree.first_child[node]; c < tree.first_child[node + 1]; ++c) {
+      const auto& child = tree.children[c];
+      below[c] = child.count;
+      if (child.count) continue;
+      for (std::size_t g = tree.first_child[child.first]; g < tree.first_child[child.first + 1]; ++g)
+        below[c] += below[g];
+    }
+  return below;
+}
+
+/// The order in which an any-hit query tries the children of each node: likely to be met and cheap to search first, by
+/// area / (1 + references), descending. Closest-hit queries go by distance and don't mind.
+std::vector<tree::WideTree::Child> order_children(const tree::WideTree& tree) {
+  const auto below = count_references(tree);
+  auto children = tree.children;
+  std::vector<std::pair<float, std::uint32_t>> order;
+  for (std::size_t node = 0; node + 1 < tree.first_child.size(); ++node) {
+    const std::uint32_t first = tree.first_child[node], last = tree.first_child[node + 1];
+    order.clear();
+    for (std::uint32_t c = first; c < last; ++c)
+      order.push_back({tree.children[c].bounds.half_area() / (1.0f + static_cast<float>(below[c])), c});
+    std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    for (std::uint32_t i = 0; i < order.size(); ++i) children[first + i] = tree.children[order[i].second];
+  }
+  return children;
+}
+
 template <int W>
-void fill(Layout& layout, const tree::WideTree& tree, std::span<const std::uint32_t> words,
-          std::span<const std::uint32_t> references, const MeshView& mesh, Executor& executor) {
+void fill(Layout& layout, const tree::WideTree& tree, std::span<const tree::WideTree::Child> children,
+          std::span<const std::uint32_t> words, std::span<const std::uint32_t> references, const MeshView& mesh,
+          Executor& executor) {
   const std::size_t nodes = tree.first_child.size() - 1;
   layout.nodes = AlignedBuffer<std::byte>(nodes * sizeof(WideNode<W>));
   auto* out = reinterpret_cast<WideNode<W>*>(layout.nodes.data());
@@ -48,9 +80,9 @@ void fill(Layout& layout, const tree::WideTree& tree, std::span<const std::uint3
   executor.for_chunks(nodes, 1024, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const std::size_t first = tree.first_child[n], last = tree.first_child[n + 1];
-      fill_node<W>(out[n], std::span(tree.children).subspan(first, last - first), words.subspan(first, last - first));
+      fill_node<W>(out[n], children.subspan(first, last - first), words.subspan(first, last - first));
       for (std::size_t c = first; c < last; ++c) {
-        const auto& child = tree.children[c];
+        const auto& child = children[c];
         for (std::uint32_t done = 0; done < child.count; done += 4)
           fill_block(blocks[leaf_first(words[c]) + done / 4],
                      references.subspan(child.first + done, std::min(4u, child.count - done)), mesh);
@@ -75,10 +107,11 @@ Result<Layout> encode_wide(const tree::WideTree& tree, std::span<const std::uint
     layout.node_count = tree.first_child.size() - 1;
     layout.reference_count = references.size();
 
-    std::vector<std::uint32_t> words(tree.children.size());
+    const auto children = order_children(tree);
+    std::vector<std::uint32_t> words(children.size());
     std::size_t blocks = 0;
     for (std::size_t c = 0; c < words.size(); ++c) {
-      const auto& child = tree.children[c];
+      const auto& child = children[c];
       words[c] = child.first;
       if (child.count == 0) continue;
       const std::uint32_t count = (child.count + 3) / 4;
@@ -95,9 +128,9 @@ Result<Layout> encode_wide(const tree::WideTree& tree, std::span<const std::uint
     layout.triangles = AlignedBuffer<std::byte>(blocks * sizeof(TriangleBlock));
     layout.root = 0;
     if (tree.width == 4)
-      fill<4>(layout, tree, words, references, mesh, executor);
+      fill<4>(layout, tree, children, words, references, mesh, executor);
     else
-      fill<8>(layout, tree, words, references, mesh, executor);
+      fill<8>(layout, tree, children, words, references, mesh, executor);
     return layout;
   });
 }

@@ -203,8 +203,10 @@ HWY_INLINE std::uint32_t push_children(const WideNode<W>& node, std::uint32_t hi
   hit &= hit - 1;
   if (HWY_LIKELY(!hit)) return node.child[a];
   if constexpr (kAny) {
-    for (; hit; hit &= hit - 1) {
-      const int i = std::countr_zero(hit);
+    // Children stand in the order in which they are worth trying (see layouts/wide.cpp): the last goes deepest.
+    while (hit) {
+      const int i = 31 - std::countl_zero(hit);
+      hit ^= 1u << i;
       *top++ = make_entry(entry[i], node.child[i]);
     }
     return node.child[a];

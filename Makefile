@@ -1,0 +1,61 @@
+# The everyday commands, thin over the CMake presets. `make help` lists them; nothing is installed or built by a bare
+# `make`. Variables: PRESET=release|debug|asan|..., JOBS=N (compile jobs), INSTALL=no (check for packages, never install).
+
+PRESET  ?= release
+JOBS    ?= $(shell tools/build_jobs.sh)
+INSTALL ?= yes
+# Set to nothing when absent, so that a cache made with ccache still works after ccache is gone.
+CCACHE  := $(shell command -v ccache)
+
+CONFIGURE = cmake --preset $(1) -DCMAKE_CXX_COMPILER_LAUNCHER=$(CCACHE)
+BUILD     = cmake --build --preset $(1) --parallel $(JOBS)
+TEST      = ctest --preset $(1) --parallel 2
+SOURCES   = find include src apps bench tests examples bindings \( -name '*.h' -o -name '*.cpp' \) -print 2>/dev/null | sort
+
+.DEFAULT_GOAL := help
+.PHONY: help dependencies build demo test bench docs format format-check tidy asan tsan clang clean
+
+help:  ## this list
+	@awk -F':.*## ' '/^[a-z -]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+dependencies:  ## install the Debian packages that are missing (as root, or through sudo)
+	@tools/install_dependencies.sh --install=$(INSTALL)
+
+build: dependencies  ## the program, optimised: build/release/bin/boxwood
+	$(call CONFIGURE,$(PRESET))
+	$(call BUILD,$(PRESET))
+
+demo: override PRESET = release
+demo: build  ## build, compare all builders on a scene made here, draw two pictures into out/
+	@tools/demo.sh build/release/bin/boxwood out
+
+test: build  ## build and run every test
+	$(call TEST,$(PRESET))
+
+bench: override PRESET = release
+bench: build  ## measure all builders on three scenes, beside Embree when it is installed
+	@tools/bench.sh build/release/bin/boxwood out
+
+docs: build  ## bring the generated tables up to date and check the documentation
+	python3 tools/check_docs.py --program build/$(PRESET)/bin/boxwood --write
+
+format:  ## rewrite all sources in the project's format (clang-format 14)
+	$(SOURCES) | xargs clang-format -i
+
+format-check:  ## fail when a source is not in the project's format
+	$(SOURCES) | xargs clang-format --dry-run --Werror
+
+tidy: build  ## clang-tidy over src and apps
+	tools/run_tidy.sh build/$(PRESET) $(JOBS)
+
+asan tsan: dependencies  ## build and run the tests under the address or the thread sanitizer
+	$(call CONFIGURE,$@)
+	$(call BUILD,$@)
+	$(call TEST,$@)
+
+clang: dependencies  ## build with clang++, warnings are errors
+	$(call CONFIGURE,$@)
+	$(call BUILD,$@)
+
+clean:  ## remove everything built and drawn
+	rm -rf build out

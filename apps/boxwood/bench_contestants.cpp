@@ -1,0 +1,132 @@
+#include "bench_contestants.h"
+
+#include <algorithm>
+
+#include "boxwood/metrics.h"
+#include "pipeline.h"
+
+namespace boxwood::program {
+namespace {
+
+/// A builder with its layouts, or a rival with its modes: what is built in one go, then traced by several contestants.
+struct Own {
+  const builders::BuildOptions* options;
+  std::vector<std::shared_ptr<BuildFigures>> figures;  // per layout
+  std::vector<std::shared_ptr<const Accel>> accels;    // per layout
+};
+struct Rival {
+  rivals::EmbreeQuality quality;
+  queries::Mode mode;
+  std::shared_ptr<BuildFigures> figures;
+  std::shared_ptr<const rivals::EmbreeRival> embree;
+};
+
+std::shared_ptr<BuildFigures> make_figures(const BenchPlan& plan) {
+  auto figures = std::make_shared<BuildFigures>();
+  figures->milliseconds.resize(plan.thread_counts.size());
+  return figures;
+}
+
+void describe(BuildFigures& figures, const tree::BinaryTree& tree, const Accel& accel, const tree::CostModel& cost) {
+  const tree::Statistics shape = tree::statistics(tree);
+  figures.surface_area_cost = metrics::surface_area_cost(tree, cost);
+  figures.nodes = shape.nodes;
+  figures.leaves = shape.leaves;
+  figures.references = shape.references;
+  figures.max_depth = shape.max_depth;
+  figures.max_leaf = shape.max_leaf;
+  figures.bytes = accel.bytes();
+  figures.hash = tree::hash(tree);
+}
+
+Status build_own(Own& own, const BenchPlan& plan, const Input& input, std::size_t thread_index,
+                 BenchExecutors& executors, const Session& session) {
+  executors.choose(thread_index);
+  const auto built = build_tree(input.mesh, *own.options, *executors.chosen);
+  if (!built) return built.error();
+  const bool is_first = own.accels.empty();
+  if (is_first) warn_excluded(input, own.options == &plan.builders[0] ? built->excluded : 0, session);
+  const auto resolved = builders::resolve_options(own.options->builder, own.options->settings);
+  if (!resolved) return resolved.error();
+  for (std::size_t i = 0; i < plan.layouts.size(); ++i) {
+    auto encoded = encode_tree(input.mesh, built->tree, plan.layouts[i], executors.chosen);
+    if (!encoded) return encoded.error();
+    BuildFigures& figures = *own.figures[i];
+    figures.milliseconds[thread_index].push_back(
+        1e3 * (built->reference_seconds + built->tree_seconds + encoded->encode_seconds));
+    if (is_first) {
+      describe(figures, built->tree, encoded->accel, resolved->cost());
+      own.accels.push_back(std::make_shared<const Accel>(std::move(encoded->accel)));
+    }
+  }
+  if (tree::hash(built->tree) != own.figures[0]->hash)
+    return {ErrorCode::malformed, fmt::format("{} built a different tree over {} with {} threads than before",
+                                              own.options->builder, input.mesh.name, plan.thread_counts[thread_index])};
+  return {};
+}
+
+Status build_rival(Rival& rival, const BenchPlan& plan, const Input& input, std::size_t thread_index) {
+  auto embree = rivals::EmbreeRival::open(input.mesh, rival.quality, rival.mode == queries::Mode::robust);
+  if (!embree) return embree.error();
+  const auto seconds = embree->build(plan.thread_counts[thread_index]);
+  if (!seconds) return seconds.error();
+  rival.figures->milliseconds[thread_index].push_back(1e3 * *seconds);
+  rival.figures->bytes = embree->bytes();
+  if (!rival.embree) rival.embree = std::make_shared<const rivals::EmbreeRival>(std::move(*embree));
+  return {};
+}
+
+std::vector<Contestant> list_contestants(const BenchPlan& plan, const std::vector<Own>& own,
+                                         const std::vector<Rival>& rivals) {
+  std::vector<Contestant> contestants;
+  for (const Own& o : own)
+    for (std::size_t i = 0; i < plan.layouts.size(); ++i)
+      for (const queries::Mode mode : plan.modes)
+        contestants.push_back({o.options->builder, plan.layouts[i], mode, o.figures[i], o.accels[i], nullptr});
+  for (const Rival& r : rivals)
+    contestants.push_back(
+        {std::string("embree:") + rivals::name(r.quality), "embree", r.mode, r.figures, nullptr, r.embree});
+  return contestants;
+}
+
+}  // namespace
+
+BenchExecutors make_executors(const BenchPlan& plan, const Session& session) {
+  BenchExecutors executors;
+  for (const int threads : plan.thread_counts) executors.by_thread_count.push_back(session.make_executor(threads));
+  executors.chosen = std::make_shared<SwitchedExecutor>(executors.by_thread_count.back());
+  return executors;
+}
+
+Result<std::vector<Contestant>> build_contestants(const BenchPlan& plan, const Input& input, BenchExecutors& executors,
+                                                  const Session& session, Progress& progress) {
+  std::vector<Own> own;
+  for (const auto& options : plan.builders) {
+    own.push_back({&options, {}, {}});
+    for (std::size_t i = 0; i < plan.layouts.size(); ++i) own.back().figures.push_back(make_figures(plan));
+  }
+  std::vector<Rival> rivals;
+  for (const RivalChoice& choice : plan.rivals)
+    for (const queries::Mode mode : plan.modes) rivals.push_back({choice.quality, mode, make_figures(plan), nullptr});
+
+  const auto steps = static_cast<double>(plan.repeat) * static_cast<double>(plan.thread_counts.size()) *
+                     static_cast<double>(own.size() + rivals.size());
+  double done = 0;
+  for (int repeat = 0; repeat < plan.repeat; ++repeat) {
+    for (std::size_t t = 0; t < plan.thread_counts.size(); ++t) {
+      for (Own& o : own) {
+        progress.label(fmt::format("{}: building {}", input.mesh.name, o.options->builder));
+        if (Status status = build_own(o, plan, input, t, executors, session); !status) return status.error();
+        progress.update(++done / steps);
+      }
+      for (Rival& r : rivals) {
+        progress.label(fmt::format("{}: building embree:{}", input.mesh.name, rivals::name(r.quality)));
+        if (Status status = build_rival(r, plan, input, t); !status) return status.error();
+        progress.update(++done / steps);
+      }
+    }
+  }
+  return list_contestants(plan, own, rivals);
+}
+
+}  // namespace boxwood::program

@@ -1,0 +1,175 @@
+// boxwood build: build, validate, measure.
+#include <vector>
+
+#include "boxwood/layouts.h"
+#include "boxwood/metrics.h"
+#include "boxwood/tree.h"
+#include "commands.h"
+#include "input.h"
+#include "pipeline.h"
+#include "progress.h"
+#include "session.h"
+#include "text.h"
+
+namespace boxwood::program {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  PipelineOptions pipeline;
+  std::string input;
+  bool skip_validation = false;
+};
+
+/// All that is reported of one build.
+struct Outcome {
+  BuiltTree built;
+  double encode_seconds = 0, validate_seconds = 0;
+  std::size_t bytes = 0, layout_nodes = 0;
+  std::string isa;
+  tree::Statistics statistics;
+  double cost = 0;
+  Status valid;
+
+  double build_seconds() const { return built.reference_seconds + built.tree_seconds + encode_seconds; }
+};
+
+Status validate(const Input& input, const tree::BinaryTree& tree, const layouts::Layout& layout) {
+  std::vector<Box> boxes(input.mesh.triangles.size());
+  const MeshView mesh = input.mesh;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const Triangle triangle = mesh.triangle(i);
+    if (mesh::is_usable(triangle)) boxes[i] = triangle.bounds();
+  }
+  tree::Expectation expectation;
+  expectation.primitive_boxes = boxes;
+  if (Status status = tree::validate(tree, expectation); !status) return status;
+  return layouts::validate(layout, tree.references.span(), tree.splits_references, mesh);
+}
+
+Result<Outcome> build_and_measure(const Options& options, const builders::BuildOptions& build_options,
+                                  const Input& input, const Session& session) {
+  Outcome outcome;
+  Progress progress("building " + build_options.builder, session.shows_progress());
+  auto built =
+      build_tree(input.mesh, build_options, *session.executor(), [&](double share) { progress.update(share); });
+  if (!built) return built.error();
+  outcome.built = std::move(*built);
+  const tree::BinaryTree& tree = outcome.built.tree;
+  progress.update(-1);
+  progress.label("encoding " + options.pipeline.layout);
+  const auto encoded = encode_tree(input.mesh, tree, options.pipeline.layout, session.executor());
+  if (!encoded) return encoded.error();
+  outcome.encode_seconds = encoded->encode_seconds;
+  outcome.bytes = encoded->accel.bytes();
+  outcome.layout_nodes = encoded->accel.layout().node_count;
+  outcome.isa = encoded->accel.isa();
+  outcome.statistics = tree::statistics(tree);
+  const auto resolved = builders::resolve_options(build_options.builder, build_options.settings);
+  if (!resolved) return resolved.error();
+  outcome.cost = metrics::surface_area_cost(tree, resolved->cost());
+  if (!options.skip_validation) {
+    progress.label("validating");
+    const double start = now();
+    outcome.valid = validate(input, tree, encoded->accel.layout());
+    outcome.validate_seconds = now() - start;
+  }
+  return outcome;
+}
+
+using Echo = std::vector<std::pair<std::string, std::string>>;
+
+Json build_json(const Options& options, const Session& session, const Input& input, const Echo& echo,
+                const Outcome& outcome) {
+  const tree::Statistics& shape = outcome.statistics;
+  Json report = session.report(outcome.isa);
+  report["mesh"] = input.json();
+  report["options"] = options_json(echo);
+  report["builder"] = options.pipeline.builder;
+  report["layout"] = options.pipeline.layout;
+  report["surface_area_cost"] = outcome.cost;
+  report["build_ms"] = 1e3 * outcome.build_seconds();
+  report["times_ms"] = {{"references", 1e3 * outcome.built.reference_seconds},
+                        {"tree", 1e3 * outcome.built.tree_seconds},
+                        {"encode", 1e3 * outcome.encode_seconds}};
+  report["nodes"] = shape.nodes;
+  report["leaves"] = shape.leaves;
+  report["references"] = shape.references;
+  report["excluded"] = outcome.built.excluded;
+  report["max_depth"] = shape.max_depth;
+  report["max_leaf"] = shape.max_leaf;
+  report["average_leaf"] = shape.average_leaf;
+  report["average_leaf_depth"] = shape.average_leaf_depth;
+  report["leaf_histogram"] = shape.leaf_histogram;
+  report["layout_nodes"] = outcome.layout_nodes;
+  report["bytes"] = outcome.bytes;
+  report["tree_bytes"] = outcome.built.tree.bytes();
+  report["hash"] = hash_text(tree::hash(outcome.built.tree));
+  report["valid"] = options.skip_validation ? Json() : Json(outcome.valid.has_value());
+  if (!outcome.valid) report["invalid_because"] = outcome.valid.error().message;
+  report["peak_memory_bytes"] = peak_memory_bytes();
+  return report;
+}
+
+void print_build(const Options& options, const Session& session, const Outcome& outcome) {
+  const auto line = [&](const char* key, const std::string& value) { session.result("  {:<16} {}\n", key, value); };
+  const tree::Statistics& shape = outcome.statistics;
+  const double triangles = static_cast<double>(outcome.built.tree.primitive_count);
+  session.result("{} -> {}\n", options.pipeline.builder, options.pipeline.layout);
+  line("build", fmt::format("{:.1f} ms: references {:.1f}, tree {:.1f}, encode {:.1f} ({:.2f} Mtriangles/s)",
+                            1e3 * outcome.build_seconds(), 1e3 * outcome.built.reference_seconds,
+                            1e3 * outcome.built.tree_seconds, 1e3 * outcome.encode_seconds,
+                            1e-6 * triangles / outcome.build_seconds()));
+  line("Exp(T)", fmt::format("{:.4f}", outcome.cost));
+  line("nodes", fmt::format("{}, {} of them leaves", with_thousands(shape.nodes), with_thousands(shape.leaves)));
+  line("references", with_thousands(shape.references));
+  line("depth", fmt::format("at most {}, leaves at {:.1f} on average", shape.max_depth, shape.average_leaf_depth));
+  line("leaf size", fmt::format("at most {}, {:.2f} on average", shape.max_leaf, shape.average_leaf));
+  line("memory", fmt::format("{:.1f} MiB in {} {} nodes; peak of the process {:.0f} MiB",
+                             static_cast<double>(outcome.bytes) / (1 << 20), with_thousands(outcome.layout_nodes),
+                             options.pipeline.layout, static_cast<double>(peak_memory_bytes()) / (1 << 20)));
+  line("hash", hash_text(tree::hash(outcome.built.tree)));
+  line("valid", options.skip_validation ? "not checked"
+                : outcome.valid ? fmt::format("yes, tree and layout ({:.1f} ms)", 1e3 * outcome.validate_seconds)
+                                : "no");
+}
+
+Status run_build(const Options& options) {
+  const Session session("build", options.common);
+  if (Status status = check_output_folder(options.common.json); !status) return status;
+  const auto build_options = options.pipeline.build_options();
+  if (!build_options) return build_options.error();
+  const auto echo = echo_options(*build_options, options.pipeline.layout);
+  if (!echo) return echo.error();
+  if (const auto layout = layouts::find(options.pipeline.layout); !layout) return layout.error();
+  const auto input = load_usable_input(options.input, session);
+  if (!input) return input.error();
+  const auto outcome = build_and_measure(options, *build_options, *input, session);
+  if (!outcome) return outcome.error();
+  session.note("{}\n{}\n{}\n", session.environment_line(outcome->isa), input->line(), options_line(*echo));
+  print_build(options, session, *outcome);
+  warn_excluded(*input, outcome->built.excluded, session);
+  if (Status status = session.finish(build_json(options, session, *input, *echo, *outcome)); !status) return status;
+  if (!outcome->valid)
+    return Error{outcome->valid.error().code, "the tree is not valid: " + outcome->valid.error().message};
+  return {};
+}
+
+}  // namespace
+
+void add_build_command(CLI::App& program, Run& run) {
+  auto options = std::make_shared<Options>();
+  CLI::App& command = *program.add_subcommand("build", "Build a tree, check it and measure it");
+  command.add_option("INPUT", options->input, kInputHelp)->required()->type_name("");
+  options->pipeline.add_to(command);
+  command.add_flag("--no-validate", options->skip_validation, "Do not check the tree and its layout");
+  options->common.add_to(command);
+  command.footer(
+      "\nExamples:\n"
+      "  boxwood build bunny.ply\n"
+      "  boxwood build bunny.ply --builder sweep-sah --set cost.traversal=2 --set cost.intersection=3\n"
+      "  boxwood build scene:city,triangles=2000000 --builder hlbvh --layout wide4 --json report.json");
+  command.callback([options, &run] { run = [options] { return run_build(*options); }; });
+}
+
+}  // namespace boxwood::program

@@ -1,0 +1,21 @@
+// The sub-commands. Each `add_*` declares one and, when it is the one chosen, sets `run` to what it does.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "boxwood/base.h"
+
+namespace boxwood::program {
+
+using Run = std::function<Status()>;
+
+void add_builders_command(CLI::App& program, Run& run);
+void add_scenes_command(CLI::App& program, Run& run);
+void add_info_command(CLI::App& program, Run& run);
+void add_build_command(CLI::App& program, Run& run);
+void add_trace_command(CLI::App& program, Run& run);
+void add_bench_command(CLI::App& program, Run& run);
+void add_render_command(CLI::App& program, Run& run);
+
+}  // namespace boxwood::program

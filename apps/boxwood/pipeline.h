@@ -1,0 +1,59 @@
+// From a mesh to something to query, step by step with the time of each: what Accel::build does in one call.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "boxwood/accel.h"
+#include "boxwood/tree.h"
+#include "input.h"
+#include "session.h"
+
+namespace boxwood::program {
+
+/// --builder, --set and --layout.
+struct PipelineOptions {
+  std::string builder = builders::BuildOptions{}.builder;
+  std::vector<std::string> settings;  ///< key=value
+  std::string layout = AccelOptions{}.layout;
+
+  void add_to(CLI::App& command);
+  Result<builders::BuildOptions> build_options() const;
+};
+
+/// Makes --set take one key=value each time it is given.
+void add_settings_option(CLI::App& command, std::vector<std::string>& settings);
+
+struct BuiltTree {
+  tree::BinaryTree tree;
+  std::size_t excluded = 0;
+  double reference_seconds = 0, tree_seconds = 0;
+};
+
+/// References, then the tree.
+Result<BuiltTree> build_tree(const MeshView& mesh, const builders::BuildOptions& options, Executor& executor,
+                             const std::function<void(double)>& progress = {});
+
+struct BuiltAccel {
+  Accel accel;
+  double encode_seconds = 0;
+};
+Result<BuiltAccel> encode_tree(const MeshView& mesh, const tree::BinaryTree& tree, const std::string& layout,
+                               const std::shared_ptr<Executor>& executor);
+
+/// Everything a sub-command that only wants to ask rays needs.
+struct Pipeline {
+  Accel accel;
+  std::size_t excluded = 0;
+  double build_seconds = 0;
+  std::vector<std::pair<std::string, std::string>> echo;  ///< resolved options, builder and layout first
+};
+/// Builds with a progress bar; warns about excluded triangles; notes what it did.
+Result<Pipeline> run_pipeline(const Input& input, const PipelineOptions& options, const Session& session);
+
+/// The resolved options with the builder, and the layout if any, in front: what reports echo.
+Result<std::vector<std::pair<std::string, std::string>>> echo_options(const builders::BuildOptions& options,
+                                                                      const std::string& layout);
+
+}  // namespace boxwood::program

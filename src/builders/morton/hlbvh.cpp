@@ -1,0 +1,87 @@
+// HLBVH (Pantaleoni and Luebke 2010, bib key hlbvh; Pharr, Jakob and Humphreys 2016, bib key pbrt, section 4.3.3):
+// references that share the first bits of their Morton codes become treelets, made like an LBVH; the surface area
+// heuristic divides the treelets. Differs from PBRT's version in its 63-bit codes, its leaves (parts/emit_morton.cpp),
+// the default size of the treelets and how they are divided (parts/emit_treelets.cpp). O(n log n), deterministic.
+#include "builders/builder_list.h"
+#include "builders/parts/bins.h"
+#include "builders/parts/build_monitor.h"
+#include "builders/parts/emit_morton.h"
+#include "builders/parts/emit_treelets.h"
+#include "builders/parts/morton_options.h"
+#include "builders/parts/morton_order.h"
+
+namespace boxwood::builders {
+namespace {
+
+constexpr const char* kAxes[] = {"all", "longest"};
+
+constexpr OptionSpec kOptions[] = {
+    kMortonBitsOption,
+    {.key = "treelet.bits",
+     .description = "references that share so many first bits of their codes form a treelet (PBRT 12)",
+     .default_value = 15,
+     .lowest = 1,
+     .highest = 30,
+     .integer = true},
+    {.key = "bins",
+     .description = "bins per axis for dividing treelets (PBRT 12)",
+     .default_value = 12,
+     .lowest = 2,
+     .highest = kMostBins,
+     .integer = true},
+    {.key = "axes",
+     .description = "axes binned for dividing treelets: all, or the one along which centroids spread most (PBRT)",
+     .choices = kAxes},
+    kMortonLeafMaxOption};
+
+/// Ranges of equal first bits.
+std::vector<MortonRange> treelet_ranges(std::span<const KeyedIndex> order, int shift) {
+  std::vector<MortonRange> ranges;
+  std::uint32_t first = 0;
+  const auto count = std::uint32_t(order.size());
+  for (std::uint32_t i = 1; i <= count; ++i) {
+    if (i < count && order[i].key >> shift == order[first].key >> shift) continue;
+    ranges.push_back({first, i});
+    first = i;
+  }
+  return ranges;
+}
+
+Result<tree::BinaryTree> build_hlbvh(refs::ReferenceSet&& set, const OptionValues& options,
+                                     const BuildContext& context) {
+  BuildMonitor monitor(context, 4);
+  const int axis_bits = bits_per_axis(options);
+  auto order = morton_order(set.references.span(), axis_bits, context.executor);
+  monitor.finish(2);
+  if (monitor.cancelled()) return cancelled_error();
+
+  AlignedBuffer<tree::Node> nodes(2 * order.size());
+  const MortonEmitter emitter(order.span(), set.references.span(), leaves(options), nodes.span(), context.cancel);
+  const auto ranges = treelet_ranges(order.span(), 3 * axis_bits - int(options.integer("treelet.bits")));
+  const auto treelets = emitter.emit(ranges, context.executor);
+  if (monitor.cancelled()) return cancelled_error();
+  if (!join_treelets(ranges, treelets, options, context, nodes.span())) return cancelled_error();
+  monitor.finish(1);
+
+  const auto primitives = sorted_primitives(order.span(), set.references.span(), context.executor);
+  order = {};  // not needed any more, and the canonical copy needs the memory
+  set.references = {};
+  auto tree = tree::canonicalize(nodes.span(), primitives.span(), set.primitive_count, false, context.executor);
+  monitor.finish(1);
+  return tree;
+}
+
+}  // namespace
+
+constinit const BuilderInfo hlbvh_builder = {
+    .id = "hlbvh",
+    .name = "HLBVH",
+    .summary = "Morton treelets below a binned SAH tree; best for fast builds that still trace well",
+    .paper = "hlbvh, pbrt",
+    .cost_class = "O(n log n)",
+    .splits_references = false,
+    .largest_sensible = kMostReferences,
+    .options = kOptions,
+    .build = build_hlbvh};
+
+}  // namespace boxwood::builders

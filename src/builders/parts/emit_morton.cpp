@@ -1,0 +1,138 @@
+// The radix tree over sorted Morton codes (Lauterbach et al. 2009, bib key lbvh; Karras 2012, bib key karras2012): a
+// range is divided where the highest bit that is not the same in all its codes changes, found by bisection; a range of
+// equal codes is divided in the middle. So the depth is at most 63 plus the logarithm of the largest number of equal
+// codes. Unlike Karras' tree, which gives every node a thread, ranges are divided from the top until they are small;
+// the small ones are the parallel tasks. How it is cut depends on the ranges only, so all thread counts give equal
+// bits.
+//
+// Boxes and prices are made on the way back up. Unlike in the papers, where leaves are single references or what is
+// left when the bits end, a range within the limit becomes a leaf where that is no dearer by the surface area
+// heuristic. O(n log n).
+#include "builders/parts/emit_morton.h"
+
+#include <bit>
+
+namespace boxwood::builders {
+namespace {
+
+constexpr std::uint32_t kTaskSize = 4096;
+constexpr std::size_t kRangesPerChunk = 4;
+
+}  // namespace
+
+/// A range and the position that divides it; 0 stands for "not divided, a task of its own".
+struct MortonEmitter::Split {
+  MortonRange range;
+  std::uint32_t middle;
+};
+
+std::uint32_t MortonEmitter::middle(MortonRange range) const {
+  const std::uint64_t first = order_[range.first].key, difference = first ^ order_[range.last - 1].key;
+  if (difference == 0) return range.first + range.size() / 2;
+  const std::uint64_t bit = std::bit_floor(difference);
+  std::uint32_t zero = range.first, one = range.last - 1;  // the bit is 0 at the one and 1 at the other
+  while (one - zero > 1) {
+    const std::uint32_t between = zero + (one - zero) / 2;
+    (order_[between].key & bit ? one : zero) = between;
+  }
+  return one;
+}
+
+EmittedSubtree MortonEmitter::leaf(std::uint32_t position) const {
+  const Box box = references_[order_[position].index].box();
+  return {{box, position, 1}, double(box.half_area()) * double(leaves_.cost.intersection)};
+}
+
+EmittedSubtree MortonEmitter::join(std::uint32_t middle, const EmittedSubtree& left,
+                                   const EmittedSubtree& right) const {
+  nodes_[2 * std::size_t(middle) - 1] = left.root;
+  nodes_[2 * std::size_t(middle)] = right.root;
+  const Box box = merge(left.root.bounds, right.root.bounds);
+  return {{box, 2 * middle - 1, 0}, double(box.half_area()) * double(leaves_.cost.traversal) + left.cost + right.cost};
+}
+
+EmittedSubtree MortonEmitter::finish(const Split& split, const EmittedSubtree& left,
+                                     const EmittedSubtree& right) const {
+  const EmittedSubtree inner = join(split.middle, left, right);
+  const std::uint32_t count = split.range.size();
+  if (leaves_.largest != 0 && count > leaves_.largest) return inner;
+  const Box& box = inner.root.bounds;
+  const double cost = double(box.half_area()) * double(leaves_.cost.intersection) * double(count);
+  if (cost > inner.cost) return inner;
+  return {{box, split.range.first, count}, cost};
+}
+
+EmittedSubtree MortonEmitter::emit_small(MortonRange whole) const {
+  if (whole.size() == 1) return leaf(whole.first);
+  // All divisions in depth-first order; backwards, the two halves of a range are always the last two subtrees made.
+  std::vector<Split> splits;
+  splits.reserve(whole.size());
+  std::vector<MortonRange> open{whole};
+  while (!open.empty()) {
+    const MortonRange range = open.back();
+    open.pop_back();
+    const std::uint32_t m = middle(range);
+    splits.push_back({range, m});
+    if (range.last - m > 1) open.push_back({m, range.last});
+    if (m - range.first > 1) open.push_back({range.first, m});
+  }
+  std::vector<EmittedSubtree> made;
+  const auto take = [&](MortonRange range) {
+    if (range.size() == 1) return leaf(range.first);
+    const EmittedSubtree subtree = made.back();
+    made.pop_back();
+    return subtree;
+  };
+  for (std::size_t s = splits.size(); s-- > 0;) {
+    const EmittedSubtree left = take({splits[s].range.first, splits[s].middle});
+    const EmittedSubtree right = take({splits[s].middle, splits[s].range.last});
+    made.push_back(finish(splits[s], left, right));
+  }
+  return made.back();
+}
+
+std::vector<EmittedSubtree> MortonEmitter::emit(std::span<const MortonRange> ranges, Executor& executor) const {
+  std::vector<Split> splits;  // of the large ranges and, between them, the tasks, in depth-first order
+  std::vector<MortonRange> tasks;
+  std::vector<MortonRange> open(ranges.rbegin(), ranges.rend());
+  while (!open.empty()) {
+    const MortonRange range = open.back();
+    open.pop_back();
+    if (range.size() <= kTaskSize) {
+      splits.push_back({range, 0});
+      tasks.push_back(range);
+      continue;
+    }
+    const std::uint32_t m = middle(range);
+    splits.push_back({range, m});
+    open.push_back({m, range.last});
+    open.push_back({range.first, m});
+  }
+
+  std::vector<EmittedSubtree> task_roots(tasks.size());
+  executor.for_chunks(tasks.size(), kRangesPerChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      if (cancel_ && cancel_->load(std::memory_order_relaxed)) return;
+      task_roots[t] = emit_small(tasks[t]);
+    }
+  });
+
+  std::vector<EmittedSubtree> made;
+  const auto take = [&] {
+    const EmittedSubtree subtree = made.back();
+    made.pop_back();
+    return subtree;
+  };
+  std::size_t task = tasks.size();
+  for (std::size_t s = splits.size(); s-- > 0;) {
+    if (splits[s].middle == 0) {
+      made.push_back(task_roots[--task]);
+      continue;
+    }
+    const EmittedSubtree left = take(), right = take();
+    made.push_back(finish(splits[s], left, right));
+  }
+  return {made.rbegin(), made.rend()};  // they were made from the last range to the first
+}
+
+}  // namespace boxwood::builders

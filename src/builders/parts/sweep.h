@@ -1,0 +1,56 @@
+// The split finder of sweep builders: references in three sorted orders, swept from both sides.
+#pragma once
+
+#include <vector>
+
+#include "boxwood/refs.h"
+#include "builders/parts/build_range.h"
+#include "builders/parts/leaf_rule.h"
+
+namespace boxwood::builders {
+
+/// A split between two neighbours of one axis's order: the references before `mid` go left.
+struct SweepSplit {
+  int axis = -1;  ///< -1: make a leaf
+  std::uint32_t mid = 0;
+  float cost = kInfinity;  ///< area * count of both sides, added, in scaled areas
+
+  bool is_leaf() const { return axis < 0; }
+};
+
+class SweepFinder {
+ public:
+  SweepFinder(refs::ReferenceSet&& set, const LeafRule& leaf_rule, Executor& executor);
+
+  BuildRange root(Executor& executor) const;
+  SweepSplit find(const BuildRange& range, Executor& executor);
+  SweepSplit median(const BuildRange& range) const;
+  void apply(const SweepSplit& split, const BuildRange& range, Executor& executor, BuildRange& left, BuildRange& right);
+  void write_leaf(const BuildRange& range, std::uint32_t* ids) const;
+
+ private:
+  /// One chunk of one axis in a sweep: the box of its references, and of all before and after it.
+  struct Part {
+    Box4 box, before = Box4::empty(), after = Box4::empty();
+    SweepSplit best;
+  };
+
+  const refs::Reference& reference(int axis, std::size_t i) const { return references_[order_[axis][i]]; }
+  Box4 measure(int axis, std::size_t begin, std::size_t end) const;
+  Box4 measure_in_chunks(int axis, std::size_t begin, std::size_t end, Executor& executor) const;
+  SweepSplit sweep_chunk(const BuildRange& range, int axis, std::size_t begin, std::size_t end, const Box4& before,
+                         const Box4& after);
+  SweepSplit sweep(const BuildRange& range, Executor& executor);
+  void partition(const BuildRange& range, std::uint32_t mid, int axis, Executor& executor);
+  void measure_centroids(BuildRange& range) const;
+
+  AlignedBuffer<refs::Reference> references_;
+  AlignedBuffer<std::uint32_t> order_[3];  ///< reference numbers by centroid, per axis
+  AlignedBuffer<std::uint32_t> other_;     ///< room for the partition
+  AlignedBuffer<float> right_area_;        ///< [i]: scaled area of the references from i to the end of the range
+  AlignedBuffer<std::uint8_t> is_left_;    ///< by reference number: its side of the split at hand
+  LeafRule leaf_rule_;
+  float area_scale_ = 1;
+};
+
+}  // namespace boxwood::builders

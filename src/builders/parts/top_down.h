@@ -1,0 +1,129 @@
+// The top-down driver: takes ranges of references apart with a split finder until only leaves are left.
+//
+// A split finder is a class with
+//   Split find(const BuildRange&, Executor&)       the split to make; Split::is_leaf() says to make none
+//   Split median(const BuildRange&)                a split into two halves, which always works
+//   void apply(const Split&, const BuildRange&, Executor&, BuildRange& left, BuildRange& right)
+//                                                  sorts the references and fills in all of both ranges but slot, depth
+//   void write_leaf(const BuildRange&, std::uint32_t* ids)
+// It is called for disjoint ranges from several threads at once.
+//
+// Large ranges are split in rounds, breadth first, each by a parallel find and apply (or, once there are many, side by
+// side); then each small range is finished by one thread. A stack that takes the larger half and goes on with the
+// smaller one never holds more than log2(n) ranges, so nothing here recurses. The node of the split of [first, last)
+// at `mid` puts its children into the slots 2 * mid and 2 * mid + 1: each mid in 1 .. n - 1 is used once at most, so
+// threads need no counter and the slots do not depend on their order. Past kDepthLimit ranges are halved, which bounds
+// the depth of the tree by kDepthLimit + log2(n).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "builders/parts/build_monitor.h"
+#include "builders/parts/build_range.h"
+
+namespace boxwood::builders {
+
+/// Deep enough for any input that a heuristic splits with sense, far below what a traversal has to fear.
+inline constexpr std::uint32_t kDepthLimit = 96;
+
+template <class Finder>
+class TopDownDriver {
+ public:
+  TopDownDriver(Finder& finder, std::size_t reference_count, const BuildContext& context)
+      : finder_(finder),
+        executor_(context.executor),
+        monitor_(context, reference_count),
+        nodes_(2 * reference_count),
+        ids_(reference_count) {}
+
+  /// Fills nodes() and ids(). False when cancelled.
+  bool run(const BuildRange& root) {
+    std::vector<BuildRange> large, small;
+    (root.size() > kLargeRange ? large : small).push_back(root);
+    while (!large.empty() && !monitor_.cancelled()) large = split_round(large, small);
+    executor_.for_chunks(small.size(), 1, [&](std::size_t chunk, std::size_t, std::size_t) {
+      finish(small[chunk]);
+      monitor_.finish(small[chunk].size());
+    });
+    return !monitor_.cancelled();
+  }
+
+  AlignedBuffer<tree::Node>& nodes() { return nodes_; }
+  AlignedBuffer<std::uint32_t>& ids() { return ids_; }
+
+ private:
+  /// Below this many ranges at once the threads share the work on each range, from here on the ranges.
+  static constexpr std::size_t kManyRanges = 8;
+
+  struct Children {
+    bool split = false;
+    BuildRange left, right;
+  };
+
+  std::vector<BuildRange> split_round(const std::vector<BuildRange>& ranges, std::vector<BuildRange>& small) {
+    std::vector<Children> children(ranges.size());
+    if (ranges.size() < kManyRanges) {
+      for (std::size_t i = 0; i < ranges.size(); ++i)
+        children[i].split = split_or_leaf(ranges[i], executor_, children[i].left, children[i].right);
+    } else {
+      executor_.for_chunks(ranges.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
+        SequentialExecutor sequential;
+        children[i].split = split_or_leaf(ranges[i], sequential, children[i].left, children[i].right);
+      });
+    }
+    std::vector<BuildRange> large;
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      if (!children[i].split) {
+        monitor_.finish(ranges[i].size());
+        continue;
+      }
+      for (const BuildRange& child : {children[i].left, children[i].right})
+        (child.size() > kLargeRange ? large : small).push_back(child);
+    }
+    return large;
+  }
+
+  void finish(BuildRange range) {
+    std::array<BuildRange, 32> stack;
+    std::size_t waiting = 0;
+    SequentialExecutor sequential;
+    while (!monitor_.cancelled()) {
+      BuildRange left, right;
+      if (split_or_leaf(range, sequential, left, right)) {
+        const bool left_is_larger = left.size() > right.size();
+        stack[waiting++] = left_is_larger ? left : right;
+        range = left_is_larger ? right : left;
+      } else {
+        if (waiting == 0) return;
+        range = stack[--waiting];
+      }
+    }
+  }
+
+  /// True when the range was split, false when it became a leaf.
+  bool split_or_leaf(const BuildRange& range, Executor& executor, BuildRange& left, BuildRange& right) {
+    if (range.size() > 1) {
+      const auto split = range.depth < kDepthLimit ? finder_.find(range, executor) : finder_.median(range);
+      if (!split.is_leaf()) {
+        finder_.apply(split, range, executor, left, right);
+        left.slot = 2 * right.first;
+        right.slot = 2 * right.first + 1;
+        left.depth = right.depth = range.depth + 1;
+        nodes_[range.slot] = {range.bounds.box(), left.slot, 0};
+        return true;
+      }
+    }
+    finder_.write_leaf(range, ids_.data() + range.first);
+    nodes_[range.slot] = {range.bounds.box(), range.first, range.size()};
+    return false;
+  }
+
+  Finder& finder_;
+  Executor& executor_;
+  BuildMonitor monitor_;
+  AlignedBuffer<tree::Node> nodes_;
+  AlignedBuffer<std::uint32_t> ids_;
+};
+
+}  // namespace boxwood::builders

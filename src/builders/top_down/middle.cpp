@@ -1,0 +1,48 @@
+// Spatial median splits: halve the box of the centroids on its widest axis, down to single references. The "Middle"
+// method of Pharr, Jakob and Humphreys (pbrt); the same split as the "recursive split" of Houghton and Spoerer (ebbvh).
+// Where all centroids fall on one side (rounding) the median takes over, as in pbrt. Ours differs for coinciding
+// centroids: pbrt makes one leaf of any size, we halve such ranges by index down to `leaf.max` (0 gives pbrt's leaf).
+// O(n log n) on ordinary meshes, at most 96 levels before medians take over; parallel; the same bits for every number
+// of threads.
+#include "builders/builder_list.h"
+#include "builders/parts/option_specs.h"
+#include "builders/parts/plane_builder.h"
+
+namespace boxwood::builders {
+namespace {
+
+class MiddleFinder : public PlaneFinder {
+ public:
+  using PlaneFinder::PlaneFinder;
+
+  RangeSplit find(const BuildRange& range, Executor& executor) const {
+    if (stops(range)) return RangeSplit();
+    const Box centroids = range.centroids2.box();
+    RangeSplit split;
+    split.kind = RangeSplit::Kind::plane;
+    split.axis = centroids.widest_axis();
+    split.threshold = centroids.center()[split.axis];
+    ranges().count(range, split, executor);
+    const bool one_sided = split.mid == range.first || split.mid == range.last;
+    return one_sided ? ranges().median(range) : split;
+  }
+};
+
+constexpr OptionSpec kOptions[] = {leaf_max_option(
+    1, "most references in a leaf; 0: single references, and one leaf of any size where centroids coincide (pbrt)")};
+
+}  // namespace
+
+constinit const BuilderInfo middle_builder = {
+    .id = "middle",
+    .name = "Spatial median",
+    .summary = "halves the centroids' box on its widest axis; best for a quick baseline to compare others with",
+    .paper = "pbrt, ebbvh",
+    .cost_class = "O(n log n)",
+    .splits_references = false,
+    .largest_sensible = kMostReferences,
+    .options = kOptions,
+    .build = &build_with_planes<MiddleFinder>,
+};
+
+}  // namespace boxwood::builders
