@@ -81,7 +81,7 @@ struct Report {
   std::size_t components = 0;          ///< connected by shared vertex positions, among usable triangles
   std::size_t boundary_edges = 0;      ///< edges (by position) that exactly one non-degenerate triangle has
   std::size_t non_manifold_edges = 0;  ///< edges that more than two non-degenerate triangles have
-  bool closed = false;                 ///< no boundary edges, and at least one triangle
+  bool closed = false;                 ///< no boundary edges, and at least one usable triangle with an area
   bool manifold = false;               ///< no edge on more than two triangles
   double surface_area = 0;             ///< of usable triangles, square units
 };

@@ -1,9 +1,10 @@
 // The entry of all builds: checks what the builders rely on, then runs one.
+#include "builders/build.h"
+
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 
-#include "boxwood/builders.h"
+#include "builders/parts/option_specs.h"
 
 namespace boxwood::builders {
 namespace {
@@ -19,20 +20,33 @@ bool is_usable(const refs::Reference& reference, std::size_t primitive_count) {
   return usable;
 }
 
-Status check_references(const refs::ReferenceSet& set, Executor& executor) {
+struct Checked {
+  std::size_t first_bad = SIZE_MAX;  ///< reference that can't be used
+  bool increasing = true;            ///< primitive ids grow from each reference to the next
+};
+
+Checked check_references(const refs::ReferenceSet& set, Executor& executor) {
   const std::span<const refs::Reference> references = set.references.span();
-  std::vector<std::size_t> first_bad((references.size() + kChunk - 1) / kChunk, references.size());
+  std::vector<Checked> chunks((references.size() + kChunk - 1) / kChunk);
   executor.for_chunks(references.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    Checked checked;
     for (std::size_t i = begin; i < end; ++i) {
-      if (is_usable(references[i], set.primitive_count)) continue;
-      first_bad[chunk] = i;
-      return;
+      if (!is_usable(references[i], set.primitive_count)) checked.first_bad = std::min(checked.first_bad, i);
+      checked.increasing &= i == 0 || references[i - 1].primitive < references[i].primitive;
     }
+    chunks[chunk] = checked;
   });
-  const std::size_t bad = *std::min_element(first_bad.begin(), first_bad.end());
-  if (bad == references.size()) return {};
+  Checked all;
+  for (const Checked& checked : chunks) {
+    all.first_bad = std::min(all.first_bad, checked.first_bad);
+    all.increasing &= checked.increasing;
+  }
+  return all;
+}
+
+Error bad_reference(const refs::ReferenceSet& set, std::size_t bad) {
   const std::string where = "reference " + std::to_string(bad);
-  const std::uint32_t primitive = references[bad].primitive;
+  const std::uint32_t primitive = set.references[bad].primitive;
   if (primitive >= set.primitive_count)
     return {ErrorCode::malformed, where + " names primitive " + std::to_string(primitive) + " of only " +
                                       std::to_string(set.primitive_count)};
@@ -40,15 +54,10 @@ Status check_references(const refs::ReferenceSet& set, Executor& executor) {
                                     ") has a box that is empty, not finite or beyond +-1e18"};
 }
 
-/// Does the set name a primitive more than once, as the parts that a pre-split makes do?
+/// Is a primitive named more than once, as the parts that a pre-split makes are?
 bool has_repeats(const refs::ReferenceSet& set) {
-  const std::span<const refs::Reference> references = set.references.span();
-  const auto not_increasing = [](const refs::Reference& a, const refs::Reference& b) {
-    return a.primitive >= b.primitive;
-  };
-  if (std::adjacent_find(references.begin(), references.end(), not_increasing) == references.end()) return false;
   std::vector<bool> seen(set.primitive_count);
-  for (const refs::Reference& reference : references) {
+  for (const refs::Reference& reference : set.references) {
     if (seen[reference.primitive]) return true;
     seen[reference.primitive] = true;
   }
@@ -68,19 +77,16 @@ Result<tree::BinaryTree> build_checked(refs::ReferenceSet&& references, const Bu
   const Result<OptionValues> values = resolve_options(options.builder, options.settings);
   if (!values) return values.error();
   const BuilderInfo& info = *find(options.builder);
-  const std::size_t count = references.references.size();
-  if (count > info.largest_sensible)
-    return {ErrorCode::too_large, "builder '" + std::string(info.id) + "' takes at most " +
-                                      std::to_string(info.largest_sensible) + " references, not " +
-                                      std::to_string(count)};
-  if (count == 0) {
+  if (const Status status = check_size(info, references); !status) return status.error();
+  if (references.references.empty()) {
     tree::BinaryTree empty;
     empty.primitive_count = references.primitive_count;
     empty.splits_references = info.splits_references;
     return empty;
   }
-  if (const Status status = check_references(references, context.executor); !status) return status.error();
-  const bool repeats = has_repeats(references);
+  const Checked checked = check_references(references, context.executor);
+  if (checked.first_bad != SIZE_MAX) return bad_reference(references, checked.first_bad);
+  const bool repeats = !checked.increasing && has_repeats(references);
 #ifndef NDEBUG
   const std::vector<Box> boxes = boxes_by_primitive(references);
 #endif
@@ -93,6 +99,18 @@ Result<tree::BinaryTree> build_checked(refs::ReferenceSet&& references, const Bu
 }
 
 }  // namespace
+
+Status check_size(const BuilderInfo& info, const refs::ReferenceSet& set) {
+  const std::size_t count = set.references.size();
+  if (count > info.largest_sensible)
+    return {ErrorCode::too_large, "builder '" + std::string(info.id) + "' takes at most " +
+                                      std::to_string(info.largest_sensible) + " references, not " +
+                                      std::to_string(count)};
+  if (set.primitive_count > kMostReferences)
+    return {ErrorCode::too_large, "a set of references is over at most " + std::to_string(kMostReferences) +
+                                      " primitives, not " + std::to_string(set.primitive_count)};
+  return {};
+}
 
 Result<tree::BinaryTree> build(refs::ReferenceSet&& references, const BuildOptions& options,
                                const BuildContext& context) {

@@ -25,7 +25,7 @@ constexpr std::uint64_t scramble(std::uint64_t x) {
 }
 
 /// `first[i]` becomes the lowest j with equal(j, i), among items for which takes_part is true; others stay alone
-/// (first[i] = i). `first` has room for `count` < 2^32 - 1 entries. The callables must be safe to call in parallel.
+/// (first[i] = i). `first` has room for `count` < 2^31 entries. The callables must be safe to call in parallel.
 template <class TakesPart, class HashOf, class Equal>
 void find_first_equal(std::size_t count, std::uint32_t* first, Executor& executor, TakesPart takes_part, HashOf hash_of,
                       Equal equal) {

@@ -49,7 +49,8 @@ class Bench(CommandLineTest):
         self.assertNotEqual(figures(), figures("--seed", 2))
 
     def test_ray_counts(self):
-        report = self.report("bench", SCENE, "--builders", "lbvh", "--rays", "primary,random", "--random-rays", 777, *QUICK)
+        report = self.report("bench", SCENE, "--builders", "lbvh", "--rays", "primary,random", "--random-rays", 777,
+                             *QUICK)
         counts = {row["rays"]: row["ray_count"] for row in report["rows"]}
         self.assertEqual(counts, {"primary": 1024, "random": 777})
         default = self.report("bench", SCENE, "--builders", "lbvh", "--rays", "random", *QUICK)
@@ -119,7 +120,8 @@ class Bench(CommandLineTest):
 
     def test_embree_as_a_rival(self):
         arguments = ["bench", SCENE, "--builders", "sweep-sah", "--rivals", "embree", "--modes", "robust,fast", *QUICK]
-        probe = subprocess.run([PROGRAM, *map(str, arguments), "--json", "-"], capture_output=True, text=True, timeout=240)
+        probe = subprocess.run([PROGRAM, *map(str, arguments), "--json", "-"], capture_output=True, text=True,
+                               timeout=240)
         if probe.returncode != 0:
             self.refused(*arguments, says="Embree 3 was not found")
             self.skipTest("this build has no Embree; it said so")

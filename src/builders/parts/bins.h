@@ -36,6 +36,12 @@ class Bins {
  public:
   explicit Bins(int count) { clear(count); }
 
+  /// A reference with its bin on each axis.
+  struct Placed {
+    Box4 box;
+    alignas(16) std::uint32_t bin[4];
+  };
+
   void clear(int count);
   void add(const BinGrid& grid, const refs::Reference* references, std::size_t count);
   void add(const Bins& other);
@@ -44,6 +50,8 @@ class Bins {
   std::uint32_t count_below(int axis, int bin) const;
 
  private:
+  void add(const Placed& placed, int axis);
+
   /// By axis. The fourth places are not used: with them a bin's address is a shift away from its number.
   struct Boxes {
     Box4 axis[4];

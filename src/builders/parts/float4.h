@@ -21,6 +21,7 @@ struct Float4 {
 
   static Float4 load(const void* p) { return {_mm_load_ps(static_cast<const float*>(p))}; }
   static Float4 fill(float x) { return {_mm_set1_ps(x)}; }
+  static Float4 fill_bits(std::uint32_t x) { return {_mm_castsi128_ps(_mm_set1_epi32(static_cast<int>(x)))}; }
   static Float4 of(float x, float y, float z, float w = 0) { return {_mm_setr_ps(x, y, z, w)}; }
   void store(void* p) const { _mm_store_ps(static_cast<float*>(p), v); }
   /// Truncated to integers; not negative.
@@ -82,6 +83,11 @@ struct Float4 {
     return r;
   }
   static Float4 fill(float x) { return {{x, x, x, x}}; }
+  static Float4 fill_bits(std::uint32_t x) {
+    float f;
+    std::memcpy(&f, &x, 4);
+    return fill(f);
+  }
   static Float4 of(float x, float y, float z, float w = 0) { return {{x, y, z, w}}; }
   void store(void* p) const { std::memcpy(p, v, 16); }
   void store_integers(std::uint32_t* p) const {

@@ -63,7 +63,7 @@ SweepFinder::SweepFinder(refs::ReferenceSet&& set, const LeafRule& leaf_rule, Ex
     for (int axis = 0; axis < 3; ++axis) order_[axis] = by_centroid(references_.span(), start, axis, executor);
   }
   other_ = AlignedBuffer<std::uint32_t>(count);
-  right_area_ = AlignedBuffer<float>(count);
+  right_cost_ = AlignedBuffer<Float4>(count);
   is_left_ = AlignedBuffer<std::uint8_t>(count);
   area_scale_ = area_scale(measure_in_chunks(0, 0, count, executor).box());
 }
@@ -77,9 +77,10 @@ BuildRange SweepFinder::root(Executor& executor) const {
 }
 
 Box4 SweepFinder::measure(int axis, std::size_t begin, std::size_t end) const {
+  const Float4 mask = xyz_mask();
   Box4 box = Box4::empty();
   for (std::size_t i = begin; i < end; ++i) box.grow(Box4::of(reference(axis, i)));
-  return box;
+  return {box.lower & mask, box.upper};
 }
 
 Box4 SweepFinder::measure_in_chunks(int axis, std::size_t begin, std::size_t end, Executor& executor) const {
@@ -115,54 +116,77 @@ SweepSplit SweepFinder::find(const BuildRange& range, Executor& executor) {
   return leaf_rule_.prefers_leaf(range.size(), area, best.cost) ? SweepSplit() : best;
 }
 
-/// The best split before one of the references [begin, end) of an axis's order; ties: the first.
-SweepSplit SweepFinder::sweep_chunk(const BuildRange& range, int axis, std::size_t begin, std::size_t end,
-                                    const Box4& before, const Box4& after) {
-  Box4 right = after, left = before;
-  for (std::size_t i = end; i-- > begin;) {
-    right.grow(Box4::of(reference(axis, i)));
-    right_area_[i] = scaled_half_area(right.box(), area_scale_);
-  }
-  SweepSplit best;
-  for (std::size_t i = begin; i < end; ++i) {
-    if (i > range.first) {
-      const float left_cost = scaled_half_area(left.box(), area_scale_) * static_cast<float>(i - range.first);
-      const float cost = left_cost + right_area_[i] * static_cast<float>(range.last - i);
-      if (cost < best.cost) best = {axis, static_cast<std::uint32_t>(i), cost};
+/// The best split of each axis before one of the references [begin, end) of its order; ties: the first.
+SweepFinder::Best SweepFinder::sweep_chunk(const BuildRange& range, std::size_t begin, std::size_t end,
+                                           const Part& part) {
+  const Float4 scale = Float4::fill(area_scale_) & xyz_mask(), mask = xyz_mask();
+  const auto grow = [&](Box4* boxes, std::size_t i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Box4 box = Box4::of(reference(axis, i));
+      boxes[axis].grow({box.lower & mask, box.upper});  // a primitive id in lane 3 is slow to multiply with
     }
-    left.grow(Box4::of(reference(axis, i)));
+  };
+  const auto cost = [&](const Box4* b, std::size_t count) {
+    return half_areas((b[0].upper - b[0].lower) * scale, (b[1].upper - b[1].lower) * scale,
+                      (b[2].upper - b[2].lower) * scale) *
+           Float4::fill(static_cast<float>(count));
+  };
+  Box4 right[3] = {part.after[0], part.after[1], part.after[2]};
+  for (std::size_t i = end; i-- > begin;) {
+    grow(right, i);
+    right_cost_[i] = cost(right, range.last - i);
   }
+  Box4 left[3] = {part.before[0], part.before[1], part.before[2]};
+  Float4 best_cost = Float4::fill(kInfinity), best_mid = Float4::fill_bits(range.first);
+  if (begin == range.first) grow(left, begin++);
+  for (std::size_t i = begin; i < end; ++i) {
+    const Float4 here = cost(left, i - range.first) + right_cost_[i];
+    const Float4 better = less(here, best_cost);
+    best_cost = select(better, here, best_cost);
+    best_mid = select(better, Float4::fill_bits(static_cast<std::uint32_t>(i)), best_mid);
+    grow(left, i);
+  }
+  Best best;
+  best_cost.store(best.cost);
+  best_mid.store(best.mid);
+  return best;
+}
+
+SweepFinder::Best SweepFinder::sweep_in_chunks(const BuildRange& range, Executor& executor) {
+  std::vector<Part> parts(chunk_count(range.size()));
+  executor.for_chunks(range.size(), kChunk, [&](std::size_t chunk, std::size_t from, std::size_t to) {
+    for (int axis = 0; axis < 3; ++axis) parts[chunk].box[axis] = measure(axis, range.first + from, range.first + to);
+  });
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 1; i < parts.size(); ++i) {
+      parts[i].before[axis] = parts[i - 1].before[axis];
+      parts[i].before[axis].grow(parts[i - 1].box[axis]);
+    }
+    for (std::size_t i = parts.size() - 1; i > 0; --i) {
+      parts[i - 1].after[axis] = parts[i].after[axis];
+      parts[i - 1].after[axis].grow(parts[i].box[axis]);
+    }
+  }
+  executor.for_chunks(range.size(), kChunk, [&](std::size_t chunk, std::size_t from, std::size_t to) {
+    parts[chunk].best = sweep_chunk(range, range.first + from, range.first + to, parts[chunk]);
+  });
+  Best best;
+  for (const Part& part : parts)
+    for (int axis = 0; axis < 3; ++axis)
+      if (part.best.cost[axis] < best.cost[axis]) {
+        best.cost[axis] = part.best.cost[axis];
+        best.mid[axis] = part.best.mid[axis];
+      }
   return best;
 }
 
 SweepSplit SweepFinder::sweep(const BuildRange& range, Executor& executor) {
-  SweepSplit best;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (range.size() <= kLargeRange) {
-      const SweepSplit split = sweep_chunk(range, axis, range.first, range.last, Box4::empty(), Box4::empty());
-      if (split.cost < best.cost) best = split;
-      continue;
-    }
-    std::vector<Part> parts(chunk_count(range.size()));
-    executor.for_chunks(range.size(), kChunk, [&](std::size_t chunk, std::size_t from, std::size_t to) {
-      parts[chunk].box = measure(axis, range.first + from, range.first + to);
-    });
-    for (std::size_t i = 1; i < parts.size(); ++i) {
-      parts[i].before = parts[i - 1].before;
-      parts[i].before.grow(parts[i - 1].box);
-    }
-    for (std::size_t i = parts.size() - 1; i > 0; --i) {
-      parts[i - 1].after = parts[i].after;
-      parts[i - 1].after.grow(parts[i].box);
-    }
-    executor.for_chunks(range.size(), kChunk, [&](std::size_t chunk, std::size_t from, std::size_t to) {
-      Part& part = parts[chunk];
-      part.best = sweep_chunk(range, axis, range.first + from, range.first + to, part.before, part.after);
-    });
-    for (const Part& part : parts)
-      if (part.best.cost < best.cost) best = part.best;
-  }
-  return best;
+  const Best best = range.size() > kLargeRange ? sweep_in_chunks(range, executor)
+                                               : sweep_chunk(range, range.first, range.last, Part());
+  SweepSplit split;
+  for (int axis = 0; axis < 3; ++axis)
+    if (best.cost[axis] < split.cost) split = {axis, best.mid[axis], best.cost[axis]};
+  return split;
 }
 
 void SweepFinder::apply(const SweepSplit& split, const BuildRange& range, Executor& executor, BuildRange& left,

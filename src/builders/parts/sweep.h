@@ -29,17 +29,24 @@ class SweepFinder {
   void write_leaf(const BuildRange& range, std::uint32_t* ids) const;
 
  private:
-  /// One chunk of one axis in a sweep: the box of its references, and of all before and after it.
+  /// The best split of each axis, found so far.
+  struct Best {
+    alignas(16) float cost[4] = {kInfinity, kInfinity, kInfinity, kInfinity};
+    alignas(16) std::uint32_t mid[4] = {};
+  };
+  /// One chunk of a sweep: by axis, the boxes of its references and of all before and after it in the range.
   struct Part {
-    Box4 box, before = Box4::empty(), after = Box4::empty();
-    SweepSplit best;
+    Box4 box[3];
+    Box4 before[3] = {Box4::empty(), Box4::empty(), Box4::empty()};
+    Box4 after[3] = {Box4::empty(), Box4::empty(), Box4::empty()};
+    Best best;
   };
 
   const refs::Reference& reference(int axis, std::size_t i) const { return references_[order_[axis][i]]; }
   Box4 measure(int axis, std::size_t begin, std::size_t end) const;
   Box4 measure_in_chunks(int axis, std::size_t begin, std::size_t end, Executor& executor) const;
-  SweepSplit sweep_chunk(const BuildRange& range, int axis, std::size_t begin, std::size_t end, const Box4& before,
-                         const Box4& after);
+  Best sweep_chunk(const BuildRange& range, std::size_t begin, std::size_t end, const Part& part);
+  Best sweep_in_chunks(const BuildRange& range, Executor& executor);
   SweepSplit sweep(const BuildRange& range, Executor& executor);
   void partition(const BuildRange& range, std::uint32_t mid, int axis, Executor& executor);
   void measure_centroids(BuildRange& range) const;
@@ -47,7 +54,7 @@ class SweepFinder {
   AlignedBuffer<refs::Reference> references_;
   AlignedBuffer<std::uint32_t> order_[3];  ///< reference numbers by centroid, per axis
   AlignedBuffer<std::uint32_t> other_;     ///< room for the partition
-  AlignedBuffer<float> right_area_;        ///< [i]: scaled area of the references from i to the end of the range
+  AlignedBuffer<Float4> right_cost_;       ///< [i]: area * count of the references from i to the end, by axis
   AlignedBuffer<std::uint8_t> is_left_;    ///< by reference number: its side of the split at hand
   LeafRule leaf_rule_;
   float area_scale_ = 1;

@@ -26,8 +26,8 @@ class BinnedSahFinder : public PlaneFinder {
 
   RangeSplit find(const BuildRange& range, Executor& executor) const {
     const double area = scaled_half_area(range.bounds.box(), area_scale_);
-    const BinGrid grid =
-        BinGrid::over(range.centroids2, bins_for(range.size()), all_axes_ ? -1 : range.centroids2.box().widest_axis());
+    const int axis = all_axes_ ? -1 : range.centroids2.box().widest_axis();
+    const BinGrid grid = BinGrid::over(range.centroids2, bins_for(range.size()), axis);
     RangeSplit split;
     if (!grid.any_usable() || !(area > 0)) {
       if (!leaf_rule_.may_be_leaf(range.size())) split = ranges().median(range);

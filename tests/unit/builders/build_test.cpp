@@ -1,10 +1,12 @@
 // The entry: what it refuses, progress and cancelling.
+#include "builders/build.h"
+
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <thread>
 
-#include "boxwood/builders.h"
 #include "unit/builders/reference_shapes.h"
 
 namespace boxwood {
@@ -48,6 +50,25 @@ TEST(Build, RefusesPrimitivesThatDoNotExist) {
   const Error error = build_error(std::move(set));
   EXPECT_EQ(error.code, ErrorCode::malformed);
   EXPECT_NE(error.message.find("reference 4 names primitive 10 of only 10"), std::string::npos) << error.message;
+}
+
+TEST(Build, RefusesMoreThanABuilderTakes) {
+  builders::BuilderInfo info = builders::registry()[0];
+  info.id = "small";
+  info.largest_sensible = 10;
+  EXPECT_TRUE(builders::check_size(info, testing::reference_set(testing::soup(10, 1))));
+  const Status status = builders::check_size(info, testing::reference_set(testing::soup(11, 1)));
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, ErrorCode::too_large);
+  EXPECT_EQ(status.error().message, "builder 'small' takes at most 10 references, not 11");
+}
+
+TEST(Build, RefusesMorePrimitivesThanCanBeCounted) {
+  refs::ReferenceSet set = testing::reference_set(testing::soup(10, 1));
+  set.primitive_count = std::size_t{1} << 31;
+  const Error error = build_error(std::move(set));
+  EXPECT_EQ(error.code, ErrorCode::too_large);
+  EXPECT_NE(error.message.find("2147483648"), std::string::npos) << error.message;
 }
 
 TEST(Build, ProgressGrowsToOneAndNeverRunsTwiceAtOnce) {

@@ -305,7 +305,8 @@ TEST_F(ReadAnything, UnitsAndAxesStayUntouched) {
 <param name="Z" type="float"/></accessor></technique_common></source><vertices id="v">
 <input semantic="POSITION" source="#p"/></vertices><triangles count="1">
 <input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles></mesh></geometry></library_geometries>
-<library_visual_scenes><visual_scene id="s"><node><scale>5 5 5</scale><instance_geometry url="#g"/></node></visual_scene>
+<library_visual_scenes><visual_scene id="s"><node>
+<scale>5 5 5</scale><instance_geometry url="#g"/></node></visual_scene>
 </library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
   const auto loaded = read_mesh(file("a.dae", text));
   ASSERT_TRUE(loaded) << loaded.error().message;
