@@ -91,8 +91,9 @@ struct BuildOptions {
 };
 
 /// Builds a tree over references. An empty set gives an empty tree. The same references and options give the same bits
-/// for every executor. Errors: those of resolve_options, more references than the builder's limit, cancelled, out of
-/// memory. Thread safe.
+/// for every executor. Errors: those of resolve_options, more references than the builder's limit, a reference with an
+/// unknown primitive or a box that is empty, not finite or beyond kLargestCoordinate, cancelled, out of memory. Thread
+/// safe.
 Result<tree::BinaryTree> build(refs::ReferenceSet&& references, const BuildOptions& options,
                                const BuildContext& context);
 

@@ -32,7 +32,7 @@ std::string text_of(const OptionSpec& spec, double value) {
 }
 
 std::string quoted(std::string_view text) {
-  return "'" + std::string(text) + "'";
+  return std::string("'").append(text).append("'");
 }
 
 /// Every option of a builder: the common ones, then its own.

@@ -31,7 +31,8 @@ struct RaySetup {
   float tmin, tmax;                   // of the scaled direction
   float t_scale;                      // t of the user's direction = t_scale * t of the scaled one; a power of two
   int kx, ky, kz;                     // kz: axis of the largest direction component
-  float shear_x, shear_y, shear_z;
+  float shear_x, shear_y, inverse_z;
+  double exact_shear_x, exact_shear_y;  // of the scaled direction, before rounding to float
 };
 
 /// False when nothing can be hit: NaN or infinity in origin or direction, zero direction, empty interval.
@@ -66,9 +67,12 @@ inline bool set_up(const Ray& ray, const Box& bounds, RaySetup& s) {
   s.kz = x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2);
   s.kx = s.kz == 2 ? 0 : s.kz + 1;
   s.ky = s.kx == 2 ? 0 : s.kx + 1;
-  s.shear_x = s.direction[s.kx] / s.direction[s.kz];
-  s.shear_y = s.direction[s.ky] / s.direction[s.kz];
-  s.shear_z = 1.0f / s.direction[s.kz];
+  const double dz = s.direction[s.kz];
+  s.inverse_z = 1.0f / s.direction[s.kz];
+  s.exact_shear_x = s.direction[s.kx] / dz;
+  s.exact_shear_y = s.direction[s.ky] / dz;
+  s.shear_x = static_cast<float>(s.exact_shear_x);
+  s.shear_y = static_cast<float>(s.exact_shear_y);
   return true;
 }
 

@@ -5,9 +5,12 @@
 // axis; the signs of three edge functions then say which side of each edge the axis passes. An edge shared by two
 // triangles is computed from the same two numbers in both, and rounding is symmetric, so the two answers never leave a
 // gap. A float edge function can only be wrong by being zero, since rounding keeps the order of the two products; near
-// zero all three are computed again in double precision, where the products are exact. Ours differs from the paper:
-// that second look starts at 1e-30 instead of at zero, so that products too small for a float are covered too, and
-// stays in double to the end. `fast`: Moeller and Trumbore 1997 (bib key moller1997).
+// zero the signs are taken again in double precision, where the products are exact. Ours differs from the paper in two
+// points. The second look starts at 1e-30 instead of at zero, so that products too small for a float are covered. And
+// the float signs only decide whether there is a hit; where it is (t, u, v) is computed in double precision from the
+// mesh's own corners. The paper's t can be off by some 1e-6 of the triangle's size when the ray grazes it, enough for a
+// triangle behind the origin to be taken for one in front, and then the answer depends on which boxes happened to be
+// opened. `fast`: Moeller and Trumbore 1997 (bib key moller1997).
 #pragma once
 
 #include "boxwood/math.h"
@@ -22,43 +25,84 @@ struct TriangleHit {
   float t, u, v;
 };
 
-/// The double-precision end of the robust test: sheared corners (x, y) and their distances z along the main axis. Does
-/// not look at [tmin, tmax]. False: missed, or seen exactly edge-on.
-inline bool robust_in_double(const float (&x)[3], const float (&y)[3], const float (&z)[3], float shear_z,
-                             TriangleHit& hit) {
-  const double u = double(x[2]) * y[1] - double(y[2]) * x[1];
-  const double v = double(x[0]) * y[2] - double(y[0]) * x[2];
-  const double w = double(x[1]) * y[0] - double(y[1]) * x[0];
-  if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return false;
-  const double determinant = u + v + w;
-  if (!(determinant != 0)) return false;  // also NaN
-  hit.u = static_cast<float>(v / determinant);
-  hit.v = static_cast<float>(w / determinant);
-  hit.t = static_cast<float>((u * z[0] + v * z[1] + w * z[2]) / determinant * shear_z);
-  return hit.t == hit.t;
-}
-
-inline bool robust_test(const Triangle& triangle, const RaySetup& ray, TriangleHit& hit) {
+/// A triangle's corners with the axes in the ray's order (kx, ky, kz), as they are in the mesh.
+struct PermutedTriangle {
   float x[3], y[3], z[3];
-  const Vec3 corner[3] = {triangle.v0, triangle.v1, triangle.v2};
+};
+
+/// Corners in the ray's frame, in single precision: the ray is the line x = y = 0. What decides between hit and miss.
+struct ShearedTriangle {
+  float x[3], y[3];
+};
+
+/// Edge functions in double precision, where the products of two floats are exact.
+struct EdgeFunctions {
+  double u = 0, v = 0, w = 0;
+
+  EdgeFunctions() = default;
+  EdgeFunctions(const auto& x, const auto& y)
+      : u(double(x[2]) * y[1] - double(y[2]) * x[1]),
+        v(double(x[0]) * y[2] - double(y[0]) * x[2]),
+        w(double(x[1]) * y[0] - double(y[1]) * x[0]) {}
+
+  bool inside() const { return !((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) && u + v + w != 0; }
+  /// Makes the three weights convex up to their sum, whatever side rounding left them on, and gives the sum.
+  double clamp() {
+    if (u + v + w < 0) u = -u, v = -v, w = -w;
+    u = u > 0 ? u : 0, v = v > 0 ? v : 0, w = w > 0 ? w : 0;
+    return u + v + w;
+  }
+};
+
+/// Single-precision look at one triangle: is it hit? The rest is Location's.
+inline bool robust_test(const PermutedTriangle& triangle, const RaySetup& ray, ShearedTriangle& sheared) {
+  auto& [x, y] = sheared;
   for (int i = 0; i < 3; ++i) {
-    z[i] = corner[i][ray.kz] - ray.origin[ray.kz];
-    x[i] = (corner[i][ray.kx] - ray.origin[ray.kx]) - ray.shear_x * z[i];
-    y[i] = (corner[i][ray.ky] - ray.origin[ray.ky]) - ray.shear_y * z[i];
+    const float z = triangle.z[i] - ray.origin[ray.kz];
+    x[i] = (triangle.x[i] - ray.origin[ray.kx]) - ray.shear_x * z;
+    y[i] = (triangle.y[i] - ray.origin[ray.ky]) - ray.shear_y * z;
   }
   const float u = x[2] * y[1] - y[2] * x[1];
   const float v = x[0] * y[2] - y[0] * x[2];
   const float w = x[1] * y[0] - y[1] * x[0];
   if (minimum(minimum(std::fabs(u), std::fabs(v)), std::fabs(w)) <= kTinyEdgeFunction)
-    return robust_in_double(x, y, z, ray.shear_z, hit);
-  if (!(minimum(minimum(u, v), w) >= 0 || maximum(maximum(u, v), w) <= 0)) return false;
-  const float r = 1.0f / (u + v + w);
-  const float a = u * r;
-  hit.u = v * r;
-  hit.v = w * r;
-  hit.t = (a * z[0] + hit.u * z[1] + hit.v * z[2]) * ray.shear_z;
-  return true;
+    return EdgeFunctions(x, y).inside();
+  return minimum(minimum(u, v), w) >= 0 || maximum(maximum(u, v), w) <= 0;
 }
+
+/// Where the ray meets a triangle that the robust test has found hit, in double precision from the mesh's own corners.
+/// The weights are convex, so t lies between the corners' distances and the point in the triangle's box even when the
+/// triangle is seen edge-on.
+class Location {
+ public:
+  Location(const PermutedTriangle& triangle, const RaySetup& ray) {
+    double x[3], y[3], z[3];
+    for (int i = 0; i < 3; ++i) {
+      z[i] = double(triangle.z[i]) - ray.origin[ray.kz];
+      x[i] = (double(triangle.x[i]) - ray.origin[ray.kx]) - ray.exact_shear_x * z[i];
+      y[i] = (double(triangle.y[i]) - ray.origin[ray.ky]) - ray.exact_shear_y * z[i];
+    }
+    weights_ = EdgeFunctions(x, y);
+    sum_ = weights_.clamp();
+    if (!(sum_ > 0)) {
+      // Exactly edge-on; the rounded frame in which it was found hit still says where.
+      ShearedTriangle sheared;
+      (void)robust_test(triangle, ray, sheared);
+      weights_ = EdgeFunctions(sheared.x, sheared.y);
+      sum_ = weights_.clamp();
+    }
+    t_ = (weights_.u * z[0] + weights_.v * z[1] + weights_.w * z[2]) / (sum_ * ray.direction[ray.kz]);
+  }
+  float t() const { return static_cast<float>(t_); }
+  /// u and v, times sum(): the division can wait until the hit has turned out to be the nearest.
+  double u_times_sum() const { return weights_.v; }
+  double v_times_sum() const { return weights_.w; }
+  double sum() const { return sum_; }
+
+ private:
+  EdgeFunctions weights_;
+  double sum_, t_;
+};
 
 inline bool fast_test(const Triangle& triangle, const RaySetup& ray, TriangleHit& hit) {
   const Vec3 d{ray.direction[0], ray.direction[1], ray.direction[2]};

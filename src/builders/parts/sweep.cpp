@@ -113,7 +113,8 @@ SweepSplit SweepFinder::find(const BuildRange& range, Executor& executor) {
   if (range.centroids2.box().extent() == Vec3{} || !(area > 0))
     return leaf_rule_.may_be_leaf(range.size()) ? SweepSplit() : median(range);
   const SweepSplit best = sweep(range, executor);
-  return leaf_rule_.prefers_leaf(range.size(), area, best.cost) ? SweepSplit() : best;
+  if (leaf_rule_.prefers_leaf(range.size(), area, best.cost)) return SweepSplit();
+  return best.is_leaf() ? median(range) : best;
 }
 
 /// The best split of each axis before one of the references [begin, end) of its order; ties: the first.

@@ -52,9 +52,9 @@ class SweepFinder {
   void measure_centroids(BuildRange& range) const;
 
   AlignedBuffer<refs::Reference> references_;
-  AlignedBuffer<std::uint32_t> order_[3];  ///< reference numbers by centroid, per axis
-  AlignedBuffer<std::uint32_t> other_;     ///< room for the partition
   AlignedBuffer<Float4> right_cost_;       ///< [i]: area * count of the references from i to the end, by axis
+  AlignedBuffer<std::uint32_t> order_[3];  ///< reference numbers by centroid, per axis
+  AlignedBuffer<std::uint32_t> other_;     ///< room for a partition
   AlignedBuffer<std::uint8_t> is_left_;    ///< by reference number: its side of the split at hand
   LeafRule leaf_rule_;
   float area_scale_ = 1;

@@ -32,6 +32,31 @@ struct Best {
   const LinearTriangle* triangle = nullptr;
 };
 
+PermutedTriangle permuted(const Triangle& triangle, const RaySetup& ray) {
+  float corner[3][3];
+  static_assert(sizeof corner == sizeof triangle);
+  std::memcpy(corner, &triangle, sizeof corner);
+  PermutedTriangle p;
+  for (int i = 0; i < 3; ++i) {
+    p.x[i] = corner[i][ray.kx];
+    p.y[i] = corner[i][ray.ky];
+    p.z[i] = corner[i][ray.kz];
+  }
+  return p;
+}
+
+template <bool kRobust>
+bool test_triangle(const Triangle& triangle, const RaySetup& ray, TriangleHit& hit) {
+  if constexpr (!kRobust) return fast_test(triangle, ray, hit);
+  const PermutedTriangle p = permuted(triangle, ray);
+  ShearedTriangle sheared;
+  if (!robust_test(p, ray, sheared)) return false;
+  const Location location(p, ray);
+  hit = {location.t(), static_cast<float>(location.u_times_sum() / location.sum()),
+         static_cast<float>(location.v_times_sum() / location.sum())};
+  return true;
+}
+
 template <bool kRobust, bool kAny, bool kCount>
 bool traverse(const Layout& layout, const RaySetup& ray, std::uint32_t* const stack, Best& best, Counts* counts) {
   const auto* nodes = reinterpret_cast<const LinearNode*>(layout.nodes.data());
@@ -52,7 +77,7 @@ bool traverse(const Layout& layout, const RaySetup& ray, std::uint32_t* const st
       if constexpr (kCount) ++counts->leaves, counts->primitives += count;
       for (const LinearTriangle* t = triangles + node.offset; t != triangles + node.offset + count; ++t) {
         TriangleHit hit;
-        if (!(kRobust ? robust_test(t->triangle, ray, hit) : fast_test(t->triangle, ray, hit))) continue;
+        if (!test_triangle<kRobust>(t->triangle, ray, hit)) continue;
         const bool nearer =
             hit.t < best.t || (hit.t == best.t && (!best.triangle || t->primitive < best.triangle->primitive));
         if (!(hit.t >= ray.tmin && nearer)) continue;

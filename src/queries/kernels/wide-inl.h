@@ -33,17 +33,16 @@ using layouts::WideNode;
 /// Entries a traversal keeps on the machine's stack; a tree that needs more gets them from the heap.
 inline constexpr std::size_t kInlineStack = 256;
 
-/// The best hit so far, with where its triangle stands.
+/// The best hit so far, with where its triangle stands. u and v are kept times `sum`.
 struct Best {
-  float t, u = 0, v = 0;
+  float t;
   std::uint32_t primitive = layouts::kInvalidPrimitive;
   const TriangleBlock* block = nullptr;
   int lane = 0;
+  double u = 0, v = 0, sum = 1;
 
-  HWY_INLINE void offer(const TriangleHit& hit, float tmin, const TriangleBlock& from, int from_lane) {
-    const std::uint32_t id = from.primitive[from_lane];
-    if (!(hit.t >= tmin && (hit.t < t || (hit.t == t && id < primitive)))) return;
-    t = hit.t, u = hit.u, v = hit.v, primitive = id, block = &from, lane = from_lane;
+  HWY_INLINE bool takes(float hit_t, float tmin, std::uint32_t id) const {
+    return hit_t >= tmin && (hit_t < t || (hit_t == t && id < primitive));
   }
 };
 
@@ -69,7 +68,8 @@ HWY_INLINE void offer_lanes(D d, std::uint64_t mask, V t, V u, V v, const Triang
   hn::Store(v, d, vs);
   for (; mask; mask &= mask - 1) {
     const int lane = std::countr_zero(mask);
-    best.offer({ts[lane], us[lane], vs[lane]}, ray.tmin, block, first_lane + lane);
+    const std::uint32_t id = block.primitive[first_lane + lane];
+    if (best.takes(ts[lane], ray.tmin, id)) best = {ts[lane], id, &block, first_lane + lane, us[lane], vs[lane], 1};
   }
 }
 
@@ -80,6 +80,33 @@ HWY_INLINE std::uint64_t mask_bits(D d, hn::Mask<D> mask) {
   return bytes[0] & ((1u << hn::Lanes(d)) - 1);
 }
 
+HWY_INLINE Triangle triangle_of(const TriangleBlock& block, int lane) {
+  const auto& c = block.corner;
+  return {{c[0][0][lane], c[0][1][lane], c[0][2][lane]},
+          {c[1][0][lane], c[1][1][lane], c[1][2][lane]},
+          {c[2][0][lane], c[2][1][lane], c[2][2][lane]}};
+}
+
+HWY_INLINE PermutedTriangle permuted(const TriangleBlock& block, int lane, const RaySetup& ray) {
+  const auto& c = block.corner;
+  return {{c[0][ray.kx][lane], c[1][ray.kx][lane], c[2][ray.kx][lane]},
+          {c[0][ray.ky][lane], c[1][ray.ky][lane], c[2][ray.ky][lane]},
+          {c[0][ray.kz][lane], c[1][ray.kz][lane], c[2][ray.kz][lane]}};
+}
+
+/// Takes a triangle that single precision has found hit, or can't decide on, for the best hit if it is nearer. Kept out
+/// of line: the double-precision code would crowd the traversal's registers.
+HWY_NOINLINE inline void consider(const TriangleBlock& block, int lane, bool doubtful, const RaySetup& ray,
+                                  Best& best) {
+  const PermutedTriangle triangle = permuted(block, lane, ray);
+  ShearedTriangle sheared;
+  if (HWY_UNLIKELY(doubtful) && !robust_test(triangle, ray, sheared)) return;
+  const Location at(triangle, ray);
+  const std::uint32_t id = block.primitive[lane];
+  if (best.takes(at.t(), ray.tmin, id)) best = {at.t(), id, &block, lane, at.u_times_sum(), at.v_times_sum(), at.sum()};
+}
+
+template <bool kAny>
 HWY_INLINE void robust_block(const TriangleBlock& block, const RaySetup& ray, Best& best) {
   const hn::CappedTag<float, 4> d;
   const int step = static_cast<int>(hn::Lanes(d));
@@ -99,27 +126,27 @@ HWY_INLINE void robust_block(const TriangleBlock& block, const RaySetup& ray, Be
     const auto w = hn::Sub(hn::Mul(bx, ay), hn::Mul(by, ax));
     const auto tiny = hn::Le(hn::Min(hn::Min(hn::Abs(u), hn::Abs(v)), hn::Abs(w)), hn::Set(d, kTinyEdgeFunction));
     const std::uint64_t doubtful = mask_bits(d, tiny);
-    const std::uint64_t inside = mask_bits(d, same_sign(d, u, v, w)) & ~doubtful;
-    if (HWY_LIKELY(!(inside | doubtful))) continue;
-    if (inside) {
-      const auto r = hn::Div(hn::Set(d, 1.0f), hn::Add(hn::Add(u, v), w));
-      const auto wa = hn::Mul(u, r), wb = hn::Mul(v, r), wc = hn::Mul(w, r);
-      const auto t =
-          hn::Mul(hn::Add(hn::Add(hn::Mul(wa, az), hn::Mul(wb, bz)), hn::Mul(wc, cz)), hn::Set(d, ray.shear_z));
-      offer_lanes(d, inside, t, wb, wc, block, lane, ray, best);
-    }
-    if (HWY_UNLIKELY(doubtful)) {
-      alignas(64) float x[3][4], y[3][4], z[3][4];
-      hn::Store(ax, d, x[0]), hn::Store(bx, d, x[1]), hn::Store(cx, d, x[2]);
-      hn::Store(ay, d, y[0]), hn::Store(by, d, y[1]), hn::Store(cy, d, y[2]);
-      hn::Store(az, d, z[0]), hn::Store(bz, d, z[1]), hn::Store(cz, d, z[2]);
-      for (std::uint64_t mask = doubtful; mask; mask &= mask - 1) {
-        const int i = std::countr_zero(mask);
-        TriangleHit hit;
-        if (robust_in_double({x[0][i], x[1][i], x[2][i]}, {y[0][i], y[1][i], y[2][i]}, {z[0][i], z[1][i], z[2][i]},
-                             ray.shear_z, hit))
-          best.offer(hit, ray.tmin, block, lane + i);
+    const std::uint64_t found = mask_bits(d, same_sign(d, u, v, w)) | doubtful;
+    if (HWY_LIKELY(!found)) continue;
+    // A hit is no nearer than the nearest corner, so a triangle that lies behind the best hit as a whole is left out.
+    const auto scale = hn::Set(d, ray.inverse_z);
+    const auto nearest = hn::Min(hn::Min(hn::Mul(az, scale), hn::Mul(bz, scale)), hn::Mul(cz, scale));
+    const auto limit = hn::Set(d, best.t * (1 + 8 * 0x1p-24f));
+    std::uint64_t mask = found & mask_bits(d, hn::Le(nearest, limit));
+    if (!mask) continue;
+    if constexpr (kAny) {
+      // And one that lies between tmin and tmax as a whole is hit, wherever exactly.
+      const auto farthest = hn::Max(hn::Max(hn::Mul(az, scale), hn::Mul(bz, scale)), hn::Mul(cz, scale));
+      const auto within = hn::And(hn::Gt(nearest, hn::Set(d, ray.tmin * (1 + 8 * 0x1p-24f))),
+                                  hn::Lt(farthest, hn::Set(d, ray.tmax * (1 - 8 * 0x1p-24f))));
+      if (const std::uint64_t sure = mask & ~doubtful & mask_bits(d, within)) {
+        best.block = &block;
+        return;
       }
+    }
+    for (; mask; mask &= mask - 1) {
+      const int i = std::countr_zero(mask);
+      consider(block, lane + i, doubtful >> i & 1, ray, best);
     }
   }
 }
@@ -251,7 +278,7 @@ HWY_INLINE bool traverse(const Layout& layout, const RaySetup& ray, StackEntry* 
       }
       for (; block != end; ++block) {
         if constexpr (kRobust)
-          robust_block(*block, ray, best);
+          robust_block<kAny>(*block, ray, best);
         else
           fast_block(*block, ray, best);
         if (kAny && best.block) return true;
@@ -298,6 +325,11 @@ class Stack {
   std::unique_ptr<StackEntry[]> heap_;
 };
 
+HWY_INLINE Hit make_hit(const RaySetup& ray, const Best& best) {
+  return {best.t * ray.t_scale, static_cast<float>(best.u / best.sum), static_cast<float>(best.v / best.sum),
+          best.primitive};
+}
+
 template <int W, bool kRobust, bool kCount>
 void closest(const Layout& layout, const Ray* rays, std::size_t count, Hit* hits, Vec3* normals, Counts* per_ray) {
   Stack stack(layout.max_stack + W);
@@ -307,17 +339,11 @@ void closest(const Layout& layout, const Ray* rays, std::size_t count, Hit* hits
     if constexpr (kCount) per_ray[i] = {};
     const bool hit =
         trace<W, kRobust, false, kCount>(layout, rays[i], setup, best, stack.data(), kCount ? per_ray + i : nullptr);
-    hits[i] = hit ? Hit{best.t * setup.t_scale, best.u, best.v, best.primitive} : Hit{};
+    hits[i] = hit ? make_hit(setup, best) : Hit{};
     if (!normals) continue;
     normals[i] = {};
     if (!hit) continue;
-    Triangle t;
-    for (int axis = 0; axis < 3; ++axis) {
-      t.v0[axis] = best.block->corner[0][axis][best.lane];
-      t.v1[axis] = best.block->corner[1][axis][best.lane];
-      t.v2[axis] = best.block->corner[2][axis][best.lane];
-    }
-    normals[i] = t.normal();
+    normals[i] = triangle_of(*best.block, best.lane).normal();
   }
 }
 

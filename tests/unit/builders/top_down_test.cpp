@@ -161,7 +161,7 @@ TEST(EqualCounts, HalvesTheReferencesAtTheMedian) {
     const tree::Node& node = tree.nodes[i];
     if (node.is_leaf()) continue;
     EXPECT_EQ(below[node.first].size(), below[i].size() / 2);
-    Box left, right, all;
+    Box left, right;
     for (const std::uint32_t id : below[node.first]) left.grow(boxes[id].lower + boxes[id].upper);
     for (const std::uint32_t id : below[node.first + 1]) right.grow(boxes[id].lower + boxes[id].upper);
     const int axis = merge(left, right).widest_axis();

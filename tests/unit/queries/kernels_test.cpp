@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "boxwood/accel.h"
+#include "boxwood/render.h"
 #include "support/meshes.h"
 
 namespace boxwood {
@@ -102,6 +103,21 @@ TEST(Kernels, AllVariantsGiveTheSameBits) {
         EXPECT_EQ(0, std::memcmp(got.data(), expected.data(), got.size() * sizeof(Hit)))
             << variant.layout << " " << variant.isa << " " << builder << " " << queries::name(mode);
       }
+  }
+}
+
+// Rays that start a hair above large triangles and graze them: whether a triangle behind the origin is taken for one in
+// front must not depend on which boxes a tree happens to open.
+TEST(Kernels, RaysFromSurfacesDoNotDependOnTheBuilder) {
+  const auto scene = mesh::make_scene("atrium", {.triangles = 20000});
+  ASSERT_TRUE(scene);
+  const auto primary = render::primary_rays(scene->view, 300, 300);
+  ASSERT_TRUE(primary);
+  const auto rays = render::diffuse_rays(make(scene->mesh, {"wide8", {}}), *primary, 1);
+  const auto expected = trace(make(scene->mesh, {"linear", "scalar"}, "middle"), rays, Mode::robust);
+  for (const auto& builder : builders::registry()) {
+    const auto got = trace(make(scene->mesh, {"wide8", {}}, builder.id), rays, Mode::robust);
+    EXPECT_EQ(0, std::memcmp(got.data(), expected.data(), got.size() * sizeof(Hit))) << builder.id;
   }
 }
 

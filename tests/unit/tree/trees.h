@@ -76,7 +76,6 @@ inline LooseTree chain(std::size_t levels, bool leaf_first) {
   tree.nodes.resize(2 * levels + 1);
   const std::uint32_t leaf_offset = leaf_first ? 1 : 2, inner_offset = leaf_first ? 2 : 1;
   std::size_t node = 0;
-  Box bounds;
   for (std::size_t i = 0; i <= levels; ++i) {
     const float x = static_cast<float>(i);
     tree.boxes.push_back({{x, 0, 0}, {x + 1, 1, 1}});
