@@ -13,7 +13,7 @@ TEST      = ctest --preset $(1) --parallel 2
 SOURCES   = find include src apps bench tests examples bindings \( -name '*.h' -o -name '*.cpp' \) -print 2>/dev/null | sort
 
 .DEFAULT_GOAL := help
-.PHONY: help dependencies build demo test bench docs format format-check tidy asan tsan clang clean
+.PHONY: help dependencies build demo test bench measuring micro leaks docs format format-check tidy asan tsan clang clean
 
 help:  ## this list
 	@awk -F':.*## ' '/^[a-z -]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -23,27 +23,40 @@ dependencies:  ## install the Debian packages that are missing (as root, or thro
 
 build: dependencies  ## the program, optimised: build/release/bin/boxwood
 	$(call CONFIGURE,$(PRESET))
-	$(call BUILD,$(PRESET))
+	$(call BUILD,$(PRESET)) --target boxwood_program
 
 demo: override PRESET = release
 demo: build  ## build, compare all builders on a scene made here, draw two pictures into out/
 	@tools/demo.sh build/release/bin/boxwood out
 
-test: build  ## build and run every test
+test: dependencies  ## build everything and run every test
+	$(call CONFIGURE,$(PRESET))
+	$(call BUILD,$(PRESET))
 	$(call TEST,$(PRESET))
 
 bench: override PRESET = release
 bench: build  ## measure all builders on three scenes, beside Embree when it is installed
 	@tools/bench.sh build/release/bin/boxwood out
 
+MEASURING = micro_benchmarks check_leaks check_agreement
+measuring: dependencies  ## build the measuring programs: build/release/bin/{micro_benchmarks,check_leaks,check_agreement}
+	$(call CONFIGURE,release)
+	$(call BUILD,release) --target $(MEASURING)
+
+micro: measuring  ## micro-benchmarks of builders and kernels
+	build/release/bin/micro_benchmarks
+
+leaks: measuring  ## count rays that escape from inside a closed surface, Embree's beside ours (minutes)
+	build/release/bin/check_leaks
+
 docs: build  ## bring the generated tables up to date and check the documentation
 	python3 tools/check_docs.py --program build/$(PRESET)/bin/boxwood --write
 
 format:  ## rewrite all sources in the project's format (clang-format 14)
-	$(SOURCES) | xargs clang-format -i
+	@$(SOURCES) | xargs clang-format -i
 
 format-check:  ## fail when a source is not in the project's format
-	$(SOURCES) | xargs clang-format --dry-run --Werror
+	@$(SOURCES) | xargs clang-format --dry-run --Werror
 
 tidy: build  ## clang-tidy over src and apps
 	tools/run_tidy.sh build/$(PRESET) $(JOBS)

@@ -30,6 +30,7 @@ enum class ErrorCode {
   unsupported,       ///< right, but not something this build or machine can do
   unwritable,        ///< an output that can't be written (no permission, no space)
   out_of_memory,     ///< an allocation failed
+  cancelled,         ///< the caller asked for an early end
   too_large,         ///< more elements than the format or the algorithm can hold
 };
 

@@ -1,4 +1,4 @@
-// Layout `linear`: PBRT's compact binary nodes (Pharr, Jakob and Humphreys 2016, bib key pbrt3), depth first, the first
+// Layout `linear`: PBRT's compact binary nodes (Pharr, Jakob and Humphreys 2016, bib key pbrt), depth first, the first
 // child right behind its parent. Ours differs in two points: the triangle count has 30 bits instead of 16, so a leaf of
 // any size works, and the split axis is found from the children's boxes, because a bottom-up tree has none.
 // O(nodes + triangles), any depth.

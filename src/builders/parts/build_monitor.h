@@ -34,7 +34,7 @@ class BuildMonitor {
 
 /// What a builder returns when it saw the cancel flag.
 inline Error cancelled_error() {
-  return {ErrorCode::invalid_argument, "the build was cancelled before it was done"};
+  return {ErrorCode::cancelled, "the build was cancelled before it was done"};
 }
 
 }  // namespace boxwood::builders

@@ -1,4 +1,8 @@
-// Binned surface area heuristic: the cheapest split between bins of centroids.
+// Binned surface area heuristic: the cheapest split between bins of centroids. Wald 2007 (bib key wald2007) with the
+// cost of MacDonald and Booth 1990 (macdonald1990); with `axes` = longest and 12 bins near the SAH builder of Pharr,
+// Jakob and Humphreys (pbrt). Ours bins all three axes by default, uses fewer bins for few references, asks every split
+// to pay (pbrt always parts a pair) and falls back to medians, then index halves, where the heuristic has nothing to
+// say. O(n log n), at most 96 levels before medians take over; parallel; the same bits for every number of threads.
 #include <cmath>
 #include <memory>
 
@@ -54,7 +58,22 @@ class BinnedSahFinder : public PlaneFinder {
  private:
   int bins_for(std::uint32_t references) const { return std::min<std::uint32_t>(bins_, 4 + references / 4); }
 
+  /// Pairs are frequent and have one split only: what the bins would say, without filling them.
+  BinSplit part_pair(const BuildRange& range, const BinGrid& grid) const {
+    const refs::Reference* const pair = ranges().references(range);
+    BinSplit split;
+    split.axis = grid.usable[0] ? 0 : grid.usable[1] ? 1 : 2;
+    split.bin = 1;
+    split.left_count = 1;
+    split.cost = scaled_half_area(pair[0].box(), area_scale_) + scaled_half_area(pair[1].box(), area_scale_);
+    const bool in_order = pair[0].centroid2(split.axis) < pair[1].centroid2(split.axis);
+    split.left = Box4::of(pair[!in_order]);
+    split.right = Box4::of(pair[in_order]);
+    return split;
+  }
+
   BinSplit bin(const BuildRange& range, const BinGrid& grid) const {
+    if (range.size() == 2) return part_pair(range, grid);
     Bins bins(grid.count);
     bins.add(grid, ranges().references(range), range.size());
     return bins.best_split(grid, area_scale_);

@@ -1,4 +1,4 @@
-// Traversal of PBRT's linear nodes (Pharr, Jakob and Humphreys 2016, bib key pbrt3): near child first by the sign of
+// Traversal of PBRT's linear nodes (Pharr, Jakob and Humphreys 2016, bib key pbrt): near child first by the sign of
 // the direction on the split axis. Ours differs: the box test is conservative (see ray_setup.h) and the stack is never
 // too small. Plain scalar code, the same on every instruction set; the reference for the wide kernels.
 #include <memory>
