@@ -109,7 +109,6 @@ void judge(const MeshView& mesh, const Ray& ray, const Hit& ours, const Hit& the
 }
 
 View parse_camera(const std::string& text) {
-  View view;
   float n[10];
   std::istringstream in(text);
   char comma;
@@ -172,13 +171,12 @@ std::size_t check(const std::string& path, const Options& options, const std::st
     for (const Set& set : sets) {
       std::vector<Hit> theirs(set.rays.size());
       embree->closest_hits(set.rays, theirs, *executor);
-      std::size_t hits = 0, equal = 0;
+      std::size_t hits = 0;
       Verdicts v;
       for (std::size_t i = 0; i < theirs.size(); ++i) {
         const Hit &a = set.first[i], &b = theirs[i];
         hits += a.is_hit();
         const bool agree = a.is_hit() == b.is_hit() && (!a || a.primitive == b.primitive || close(a.t, b.t));
-        equal += agree;
         if (!agree) judge(mesh, set.rays[i], a, b, v);
       }
       fmt::print(

@@ -12,6 +12,8 @@
 namespace boxwood::io {
 namespace {
 
+using Json = nlohmann::json;
+
 constexpr std::uint32_t kDeepestNode = 1000;     // assimp recurses along nodes; it survives some ten thousand
 constexpr std::uint64_t kMostUses = 10'000'000;  // nodes with each path to them counted
 constexpr std::uint64_t kMissing = ~std::uint64_t{0};
@@ -57,18 +59,18 @@ Result<std::string> read_text(FileReader& file, const std::filesystem::path& pat
 
 class Outline {
  public:
-  Outline(const JsonValue& root, const std::filesystem::path& path) : root_(root), path_(path) {}
+  Outline(const Json& root, const std::filesystem::path& path) : root_(root), path_(path) {}
 
   Result<std::optional<GltfOutline>> make() {
-    for (const JsonValue& extension : root_.array("extensionsRequired"))
-      if (extension.string == "EXT_meshopt_compression" || extension.string == "EXT_mesh_gpu_instancing")
-        return Error(
-            read_error(ErrorCode::unsupported, path_, "it needs the glTF extension " + one_line(extension.string)));
-    const auto& nodes = root_.array("nodes");
+    for (const Json& extension : json_array(root_, "extensionsRequired"))
+      if (extension == "EXT_meshopt_compression" || extension == "EXT_mesh_gpu_instancing")
+        return Error(read_error(ErrorCode::unsupported, path_,
+                                "it needs the glTF extension " + one_line(extension.get<std::string>())));
+    const auto& nodes = json_array(root_, "nodes");
     uses_.assign(nodes.size(), 0);
     if (Status status = count_uses(nodes); !status) return status.error();
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      const std::uint64_t triangles = uses_[i] ? triangles_of_mesh(nodes[i].integer("mesh", kMissing)) : 0;
+      const std::uint64_t triangles = uses_[i] ? triangles_of_mesh(json_integer(nodes[i], "mesh", kMissing)) : 0;
       outline_.triangles += std::min(triangles, std::uint64_t{1} << 32) * uses_[i];
     }
     follow_order(nodes);
@@ -76,22 +78,22 @@ class Outline {
   }
 
  private:
-  const std::vector<JsonValue>& roots() const {
-    const auto& scenes = root_.array("scenes");
-    const std::uint64_t scene = root_.integer("scene", 0);
-    static const std::vector<JsonValue> kNone;
-    return scene < scenes.size() ? scenes[scene].array("nodes") : kNone;
+  const Json& roots() const {
+    const auto& scenes = json_array(root_, "scenes");
+    const std::uint64_t scene = json_integer(root_, "scene", 0);
+    static const Json kNone = Json::array();
+    return scene < scenes.size() ? json_array(scenes[scene], "nodes") : kNone;
   }
 
   // Topological order (Kahn 1962): a node is done when all its parents are.
-  Status count_uses(const std::vector<JsonValue>& nodes) {
+  Status count_uses(const Json& nodes) {
     std::vector<std::uint32_t> parents(nodes.size(), 0), depth(nodes.size(), 0);
     const auto for_each_child = [&](std::size_t node, auto&& visit) {
-      for (const JsonValue& child : nodes[node].array("children"))
-        if (const std::uint64_t c = child.integer_or(kMissing); c < nodes.size()) visit(c);
+      for (const Json& child : json_array(nodes[node], "children"))
+        if (const std::uint64_t c = json_integer(child, kMissing); c < nodes.size()) visit(c);
     };
-    for (const JsonValue& root : roots())
-      if (const std::uint64_t r = root.integer_or(kMissing); r < nodes.size()) ++uses_[r];
+    for (const Json& root : roots())
+      if (const std::uint64_t r = json_integer(root, kMissing); r < nodes.size()) ++uses_[r];
     for (std::size_t i = 0; i < nodes.size(); ++i) for_each_child(i, [&](std::uint64_t c) { ++parents[c]; });
     std::vector<std::size_t> ready;
     for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -120,21 +122,22 @@ class Outline {
   }
 
   std::uint64_t triangles_of_mesh(std::uint64_t mesh) const {
-    const auto& meshes = root_.array("meshes");
+    const auto& meshes = json_array(root_, "meshes");
     if (mesh >= meshes.size()) return 0;
     std::uint64_t sum = 0;
-    for (const JsonValue& primitive : meshes[mesh].array("primitives")) sum += triangles_of(primitive);
+    for (const Json& primitive : json_array(meshes[mesh], "primitives")) sum += triangles_of(primitive);
     return sum;
   }
 
-  std::uint64_t triangles_of(const JsonValue& primitive) const {
-    const JsonValue* attributes = primitive.find("attributes");
-    const std::uint64_t positions = attributes ? attributes->integer("POSITION", kMissing) : kMissing;
-    const std::uint64_t accessor = primitive.integer("indices", positions);
-    const auto& accessors = root_.array("accessors");
+  std::uint64_t triangles_of(const Json& primitive) const {
+    const auto attributes = primitive.is_object() ? primitive.find("attributes") : primitive.end();
+    const std::uint64_t positions =
+        attributes != primitive.end() ? json_integer(*attributes, "POSITION", kMissing) : kMissing;
+    const std::uint64_t accessor = json_integer(primitive, "indices", positions);
+    const auto& accessors = json_array(root_, "accessors");
     if (positions >= accessors.size() || accessor >= accessors.size()) return 0;
-    const std::uint64_t corners = accessors[accessor].integer("count", 0);
-    switch (primitive.integer("mode", 4)) {
+    const std::uint64_t corners = json_integer(accessors[accessor], "count", 0);
+    switch (json_integer(primitive, "mode", 4)) {
       case 4:
         return corners / 3;
       case 5:
@@ -145,25 +148,25 @@ class Outline {
     }
   }
 
-  void follow_order(const std::vector<JsonValue>& nodes) {
+  void follow_order(const Json& nodes) {
     std::vector<std::uint64_t> stack;
-    const auto push = [&](const std::vector<JsonValue>& children) {
+    const auto push = [&](const Json& children) {
       for (std::size_t i = children.size(); i-- > 0;)
-        if (const std::uint64_t c = children[i].integer_or(kMissing); c < nodes.size()) stack.push_back(c);
+        if (const std::uint64_t c = json_integer(children[i], kMissing); c < nodes.size()) stack.push_back(c);
     };
     push(roots());
     for (std::uint64_t least = 0; !stack.empty();) {
-      const JsonValue& node = nodes[stack.back()];
+      const Json& node = nodes[stack.back()];
       stack.pop_back();
-      if (const std::uint64_t mesh = node.integer("mesh", kMissing); mesh != kMissing) {
+      if (const std::uint64_t mesh = json_integer(node, "mesh", kMissing); mesh != kMissing) {
         if (mesh < least) outline_.keeps_file_order = false;
         least = std::max(least, mesh + 1);
       }
-      push(node.array("children"));
+      push(json_array(node, "children"));
     }
   }
 
-  const JsonValue& root_;
+  const Json& root_;
   const std::filesystem::path& path_;
   GltfOutline outline_;
   std::vector<std::uint64_t> uses_;
@@ -175,11 +178,10 @@ Result<std::optional<GltfOutline>> read_gltf_outline(FileReader& file, const std
   const Result<std::string> text = read_text(file, path);
   if (!text) return text.error();
   if (text->empty()) return std::optional<GltfOutline>();
-  const Result<JsonValue> root = parse_json(*text);
+  const Result<Json> root = parse_json(*text);
   if (!root) return Error(read_error(root.error().code, path, root.error().message));
-  const JsonValue* asset = root->find("asset");
-  const JsonValue* version = asset ? asset->find("version") : nullptr;
-  if (!version || !version->string.starts_with("2")) return std::optional<GltfOutline>();
+  if (!root->is_object() || !root->contains("asset") || !json_string(root->at("asset"), "version").starts_with("2"))
+    return std::optional<GltfOutline>();
   return Outline(*root, path).make();
 }
 

@@ -1,39 +1,29 @@
-// A small JSON reader for checks before a file is handed to a library: it never recurses and copies no text.
+// Reading JSON that nobody has checked: look-ups that give a fallback instead of failing.
 #pragma once
 
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
 
 #include "boxwood/base.h"
 
 namespace boxwood::io {
 
-/// One value. Strings and keys are views into the text, with their escapes as they stand there.
-struct JsonValue {
-  enum class Kind : std::uint8_t { null, boolean, number, string, array, object };
+/// Parses one value and the blanks around it. The error's message is a reason ("byte 17 is not what JSON allows
+/// there"), without the file. Nesting deeper than 512 is refused, since assimp's reader recurses along it.
+Result<nlohmann::json> parse_json(const std::string& text);
 
-  Kind kind = Kind::null;
-  double number = 0;  ///< also 0 or 1 for booleans
-  std::string_view string;
-  std::vector<JsonValue> items;         ///< of an array, or the values of an object
-  std::vector<std::string_view> names;  ///< of an object, as many as items
+/// The array `name` of an object, or an empty one when there is none.
+const nlohmann::json& json_array(const nlohmann::json& object, const char* name);
 
-  /// The member of an object, or null when it has none of that name or is no object.
-  const JsonValue* find(std::string_view name) const;
+/// The string `name` of an object, or an empty one when there is none.
+std::string json_string(const nlohmann::json& object, const char* name);
 
-  /// The member's items if it is an array, otherwise an empty list.
-  const std::vector<JsonValue>& array(std::string_view name) const;
+/// The value as a non-negative integer below 2^53, otherwise `fallback`.
+std::uint64_t json_integer(const nlohmann::json& value, std::uint64_t fallback);
 
-  /// The member as a non-negative integer below 2^53, otherwise `fallback`.
-  std::uint64_t integer(std::string_view name, std::uint64_t fallback) const;
-
-  /// The value itself as such an integer, otherwise `fallback`.
-  std::uint64_t integer_or(std::uint64_t fallback) const;
-};
-
-/// Parses one value and the blanks around it. `text` must outlive the result. The error's message is a reason
-/// ("byte 17 is not what JSON allows there"), without the file. Nesting deeper than 512 is refused.
-Result<JsonValue> parse_json(std::string_view text);
+/// The member `name` of an object as such an integer, otherwise `fallback`.
+std::uint64_t json_integer(const nlohmann::json& object, const char* name, std::uint64_t fallback);
 
 }  // namespace boxwood::io
