@@ -25,8 +25,7 @@ KEY = re.compile(r"^\s*@\w+\s*\{\s*([^,\s]+)", re.MULTILINE)
 def ask_builders(program):
     """The registry as the program tells it."""
     answer = subprocess.run([program, "builders", "--json", "-", "--quiet"], check=True, capture_output=True, text=True)
-    report = json.loads(answer.stdout)
-    return report["builders"] if isinstance(report, dict) else report
+    return json.loads(answer.stdout)
 
 
 def table_of(builders, page):

@@ -62,14 +62,13 @@ void print_settings(const Session& session, std::span<const builders::OptionSpec
 
 Status run_builders(const Options& options) {
   const Session session("builders", options.common);
-  Json report = session.report({});
-  report["builders"] = Json::array();
+  Json report = Json::array();
   std::size_t width = 0;
   for (const auto& builder : builders::registry()) width = std::max(width, std::string(builder.id).size());
   for (const auto& builder : builders::registry()) {
     session.result("{:<{}}  {}\n", builder.id, width, builder.summary);
     if (options.show_settings) print_settings(session, builder.options);
-    report["builders"].push_back(builder_json(builder));
+    report.push_back(builder_json(builder));
   }
   if (options.show_settings) {
     session.result("every builder\n");

@@ -9,8 +9,7 @@ namespace {
 
 Status run_scenes(const CommonOptions& options) {
   const Session session("scenes", options);
-  Json report = session.report({});
-  report["scenes"] = Json::array();
+  Json report = Json::array();
   std::size_t width = 0;
   for (const auto& scene : mesh::scenes()) width = std::max(width, std::string(scene.id).size());
   for (const auto& scene : mesh::scenes()) {
@@ -21,7 +20,7 @@ Status run_scenes(const CommonOptions& options) {
     json["summary"] = scene.summary;
     json["paper"] = scene.paper;
     json["default_triangles"] = scene.default_triangles;
-    report["scenes"].push_back(json);
+    report.push_back(json);
   }
   return session.finish(report);
 }

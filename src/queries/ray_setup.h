@@ -20,8 +20,9 @@ namespace boxwood::queries {
 /// 12 h P, so a box is never missed by a ray that the triangle test lets hit something inside it. Cost: none, the pad
 /// is part of the constant.
 ///
-/// Axis-parallel rays: the reciprocal is limited to 1e37 / M. Every product stays finite, so no NaN arises, and a ray
-/// that lies exactly in a box's side has an interval of +-12 h * 1e37 there, which constrains nothing.
+/// Axis-parallel rays: the reciprocal is limited to 1e37 / max(M, 1). Every product stays finite, so no NaN arises, and
+/// a ray that lies exactly in a box's side has an interval of +-12 h * M * 1e37 (at most) there, which constrains
+/// nothing.
 struct RaySetup {
   float origin[3];
   float direction[3];  // scaled
@@ -52,7 +53,7 @@ inline bool set_up(const Ray& ray, const Box& bounds, RaySetup& s) {
     const float o = s.origin[axis] = ray.origin[axis];
     const float da = s.direction[axis] = d[axis] * down;
     const float reach = maximum(std::fabs(bounds.lower[axis]), std::fabs(bounds.upper[axis])) + std::fabs(o);
-    const float limit = 1e37f / maximum(reach, 1e-30f);
+    const float limit = 1e37f / maximum(reach, 1.0f);
     const float r = minimum(1.0f / std::fabs(da), limit);
     const float pad = 12 * 0x1p-24f * reach * r;
     const bool negative = std::signbit(da);

@@ -91,7 +91,7 @@ class Meshes(CommandLineTest):
         self.refused("info", "scene:soup,", says="scene:soup,")
 
     def test_every_scene_can_be_inspected(self):
-        for scene in self.report("scenes")["scenes"]:
+        for scene in self.report("scenes"):
             with self.subTest(scene["id"]):
                 report = self.report("info", f"scene:{scene['id']},triangles=3000")
                 self.assertEqual(report["non_finite"], 0)

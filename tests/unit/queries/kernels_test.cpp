@@ -207,6 +207,26 @@ TEST(Kernels, AxisParallelRaysThroughEveryGridCorner) {
   }
 }
 
+// A direction component of exactly zero, at every scale: the box test's reciprocal must neither overflow nor become
+// NaN.
+TEST(Kernels, RaysParallelToAPlaneAtEveryScale) {
+  for (float radius : {1e-30f, 1e-12f, 1e-4f, 1.0f, 1e6f, 1e15f}) {
+    const TriangleMesh mesh = test::icosphere(3, radius);
+    test::Random random(6);
+    std::vector<Ray> rays(3000);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      rays[i] = {0.5f * radius * random.direction(), 0, random.direction(), kInfinity};
+      rays[i].direction[static_cast<int>(i % 3)] = i % 2 ? 0.0f : -0.0f;
+      if (i % 5 == 0) rays[i].direction[static_cast<int>((i + 1) % 3)] = 0;
+    }
+    for (const Variant& variant : variants()) {
+      const auto hits = trace(make(mesh, variant), rays, Mode::robust);
+      for (std::size_t i = 0; i < hits.size(); ++i)
+        ASSERT_TRUE(hits[i]) << variant.layout << " " << variant.isa << " radius " << radius << " ray " << i;
+    }
+  }
+}
+
 TEST(Kernels, LowestIdWinsAmongCoincidentTriangles) {
   TriangleMesh mesh = test::grid(8);
   const auto once = mesh.triangles;
