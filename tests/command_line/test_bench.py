@@ -57,7 +57,7 @@ class Bench(CommandLineTest):
         self.assertEqual(default["rows"][0]["ray_count"], 1024)
 
     def test_all_builders_and_the_summary_line_of_each(self):
-        ids = [builder["id"] for builder in self.report("builders")["builders"]]
+        ids = [builder["id"] for builder in self.report("builders")]
         text = self.run_program("bench", SCENE, "--builders", "all", "--table", "summary", *QUICK).stdout
         lines = text.split("Summary:")[1].splitlines()
         self.assertEqual([line.split()[0] for line in lines[3:]], ids)

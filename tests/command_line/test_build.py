@@ -8,7 +8,7 @@ from support import CommandLineTest, write_ply
 
 class Build(CommandLineTest):
     def builders(self):
-        return [builder["id"] for builder in self.report("builders")["builders"]]
+        return [builder["id"] for builder in self.report("builders")]
 
     def test_keys_and_their_meaning(self):
         report = self.report("build", self.cube, "--builder", "sweep-sah")
@@ -31,7 +31,7 @@ class Build(CommandLineTest):
         self.assertIn("cost.traversal", report["options"])
 
     def test_every_builder_and_layout_is_valid_and_the_same_for_all_threads(self):
-        scene = self.report("scenes")["scenes"][0]["id"]
+        scene = self.report("scenes")[0]["id"]
         for builder, layout in itertools.product(self.builders(), ("linear", "wide4", "wide8")):
             with self.subTest(builder=builder, layout=layout):
                 reports = [self.report("build", f"scene:{scene},triangles=5000", "-b", builder, "-l", layout,
