@@ -61,14 +61,10 @@ format-check:  ## fail when a source is not in the project's format
 tidy: build  ## clang-tidy over src and apps
 	tools/run_tidy.sh build/$(PRESET) $(JOBS)
 
-asan tsan: dependencies  ## build and run the tests under the address or the thread sanitizer
+asan tsan clang: dependencies  ## build and run the tests under a sanitizer; clang: under asan's, by clang++, warnings are errors
 	$(call CONFIGURE,$@)
 	$(call BUILD,$@)
 	$(call TEST,$@)
-
-clang: dependencies  ## build with clang++, warnings are errors
-	$(call CONFIGURE,$@)
-	$(call BUILD,$@)
 
 clean:  ## remove everything built and drawn
 	rm -rf build out
