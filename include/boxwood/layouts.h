@@ -91,14 +91,13 @@ struct Layout {
 /// can address, a reference past the mesh, out of memory. Deterministic, parallel, any depth.
 Result<Layout> encode_linear(const tree::BinaryTree& tree, const MeshView& mesh, Executor& executor);
 
-/// Encodes a tree of width 4 or 8 as `wide4` or `wide8`. `references` are those of the binary tree it was collapsed
-/// from. Leaves must hold 1 to 32 references. Errors as above.
-Result<Layout> encode_wide(const tree::WideTree& tree, std::span<const std::uint32_t> references, const MeshView& mesh,
-                           Executor& executor);
+/// Encodes a tree of width 4 or 8 as `wide4` or `wide8`. Leaves must hold 1 to 32 references. Errors as above.
+Result<Layout> encode_wide(const tree::WideTree& tree, const MeshView& mesh, Executor& executor);
 
 /// Walks the encoded tree and gives the first contradiction as an error: every child box holds all triangles below it
 /// (meets them, when references are split), every word points inside the arrays, every reference is found exactly as
-/// often as in `references` with the mesh's exact corners, and no path needs more stack than max_stack.
+/// often as in `references`, those of the binary tree (when references are split: at least once and at most as often),
+/// with the mesh's exact corners, and no path needs more stack than max_stack.
 Status validate(const Layout& layout, std::span<const std::uint32_t> references, bool splits_references,
                 const MeshView& mesh);
 

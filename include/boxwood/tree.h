@@ -49,6 +49,11 @@ struct BinaryTree {
 BinaryTree canonicalize(std::span<const Node> nodes, std::span<const std::uint32_t> references,
                         std::size_t primitive_count, bool splits_references, Executor& executor);
 
+/// Takes further references to a primitive out of each leaf that has the primitive already, as it happens when parts of
+/// one primitive meet again in a leaf (Dammertz and Keller 2008). The first of each stays; boxes and nodes are as
+/// before. Canonical in, canonical out. O(references).
+void remove_duplicates(BinaryTree& tree);
+
 /// A tree of up to `width` children per node, ready to be encoded. Children are in the order of the binary tree.
 struct WideTree {
   struct Child {
@@ -60,7 +65,8 @@ struct WideTree {
   Box bounds;
   std::vector<std::uint32_t> first_child;  ///< per node, plus one at the end: children[first_child[n]] to [n + 1]
   std::vector<Child> children;
-  std::size_t max_stack = 0;  ///< most entries a depth-first traversal can have waiting at once
+  std::vector<std::uint32_t> references;  ///< primitive ids by leaf, no id twice in one leaf
+  std::size_t max_stack = 0;              ///< most entries a depth-first traversal can have waiting at once
 };
 
 /// Shape of a tree. Depth of the root is 0.

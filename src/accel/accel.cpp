@@ -20,7 +20,7 @@ Result<layouts::Layout> encode(layouts::LayoutId id, const tree::BinaryTree& tre
   options.max_leaf_blocks = 4;
   auto wide = optimizers::collapse_to_wide(tree, options, executor);
   if (!wide) return wide.error();
-  return layouts::encode_wide(*wide, tree.references.span(), mesh, executor);
+  return layouts::encode_wide(*wide, mesh, executor);
 }
 
 Status same_length(std::size_t rays, std::size_t results, const char* what) {

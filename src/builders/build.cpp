@@ -90,9 +90,11 @@ Result<tree::BinaryTree> build_checked(refs::ReferenceSet&& references, const Bu
 #ifndef NDEBUG
   const std::vector<Box> boxes = boxes_by_primitive(references);
 #endif
+  if (!references.primitives) references.primitives = refs::box_primitives();
   Result<tree::BinaryTree> tree = info.build(std::move(references), *values, context);
   if (tree) {
     tree->splits_references |= repeats;
+    if (tree->splits_references) tree::remove_duplicates(*tree);
     assert(repeats || tree::validate(*tree, {.primitive_boxes = boxes}));
   }
   return tree;

@@ -71,8 +71,8 @@ std::vector<tree::WideTree::Child> order_children(const tree::WideTree& tree) {
 
 template <int W>
 void fill(Layout& layout, const tree::WideTree& tree, std::span<const tree::WideTree::Child> children,
-          std::span<const std::uint32_t> words, std::span<const std::uint32_t> references, const MeshView& mesh,
-          Executor& executor) {
+          std::span<const std::uint32_t> words, const MeshView& mesh, Executor& executor) {
+  const std::span<const std::uint32_t> references = tree.references;
   const std::size_t nodes = tree.first_child.size() - 1;
   layout.nodes = AlignedBuffer<std::byte>(nodes * sizeof(WideNode<W>));
   auto* out = reinterpret_cast<WideNode<W>*>(layout.nodes.data());
@@ -93,19 +93,18 @@ void fill(Layout& layout, const tree::WideTree& tree, std::span<const tree::Wide
 
 }  // namespace
 
-Result<Layout> encode_wide(const tree::WideTree& tree, std::span<const std::uint32_t> references, const MeshView& mesh,
-                           Executor& executor) {
+Result<Layout> encode_wide(const tree::WideTree& tree, const MeshView& mesh, Executor& executor) {
   if (tree.width != 4 && tree.width != 8)
     return {ErrorCode::invalid_argument, "wide layouts have 4 or 8 children a node, not " + std::to_string(tree.width)};
   return guard_memory([&]() -> Result<Layout> {
     Layout layout;
     layout.id = tree.width == 4 ? LayoutId::wide4 : LayoutId::wide8;
     if (tree.children.empty()) return layout;
-    if (auto status = check_references(references, mesh); !status) return status.error();
+    if (auto status = check_references(tree.references, mesh); !status) return status.error();
     layout.bounds = tree.bounds;
     layout.max_stack = tree.max_stack;
     layout.node_count = tree.first_child.size() - 1;
-    layout.reference_count = references.size();
+    layout.reference_count = tree.references.size();
 
     const auto children = order_children(tree);
     std::vector<std::uint32_t> words(children.size());
@@ -128,9 +127,9 @@ Result<Layout> encode_wide(const tree::WideTree& tree, std::span<const std::uint
     layout.triangles = AlignedBuffer<std::byte>(blocks * sizeof(TriangleBlock));
     layout.root = 0;
     if (tree.width == 4)
-      fill<4>(layout, tree, children, words, references, mesh, executor);
+      fill<4>(layout, tree, children, words, mesh, executor);
     else
-      fill<8>(layout, tree, children, words, references, mesh, executor);
+      fill<8>(layout, tree, children, words, mesh, executor);
     return layout;
   });
 }

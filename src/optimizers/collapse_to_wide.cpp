@@ -10,6 +10,7 @@
 #include "boxwood/optimizers.h"
 #include "optimizers/forest_costs.h"
 #include "optimizers/leaf_chunks.h"
+#include "tree/unique_prefix.h"
 
 namespace boxwood::optimizers {
 namespace {
@@ -53,6 +54,7 @@ class Emitter {
     }
     out_.first_child.push_back(std::uint32_t(out_.children.size()));
     out_.max_stack = std::size_t(most_waiting_) + 1;
+    own_references();
     return std::move(out_);
   }
 
@@ -117,6 +119,24 @@ class Emitter {
         add_inner(n, first, count_of(node));
       }
     }
+  }
+
+  /// Leaves made of whole subtrees may have got several parts of one primitive; one reference is enough.
+  void own_references() {
+    out_.references.assign(tree_.references.begin(), tree_.references.end());
+    if (!tree_.splits_references) return;
+    std::size_t next = 0;
+    std::vector<std::uint32_t> references(out_.references.size());
+    for (tree::WideTree::Child& child : out_.children) {
+      if (child.count == 0) continue;
+      const std::span<std::uint32_t> ids = std::span(out_.references).subspan(child.first, child.count);
+      child.count = std::uint32_t(tree::unique_prefix(ids));
+      child.first = std::uint32_t(next);
+      std::copy_n(ids.begin(), child.count, references.begin() + std::ptrdiff_t(next));
+      next += child.count;
+    }
+    references.resize(next);
+    out_.references = std::move(references);
   }
 
   bool opens(const tree::Node& node, int trees) const {

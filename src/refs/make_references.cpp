@@ -29,6 +29,7 @@ Filled fill(const MeshView& mesh, std::size_t begin, std::size_t end, Reference*
 ReferenceSet make(const MeshView& mesh, Executor& executor) {
   ReferenceSet set;
   set.primitive_count = mesh.triangle_count;
+  set.primitives = triangle_primitives(mesh);
   set.references = AlignedBuffer<Reference>(mesh.triangle_count);
   Reference* const out = set.references.data();
   std::vector<Filled> chunks((mesh.triangle_count + kChunk - 1) / kChunk);

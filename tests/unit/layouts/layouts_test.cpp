@@ -23,7 +23,7 @@ Result<Layout> encode(LayoutId id, const tree::BinaryTree& tree, const MeshView&
   if (id == LayoutId::linear) return encode_linear(tree, mesh, executor);
   auto wide = optimizers::collapse_to_wide(tree, {.width = id == LayoutId::wide4 ? 4 : 8}, executor);
   EXPECT_TRUE(wide) << wide.error().message;
-  return encode_wide(*wide, tree.references.span(), mesh, executor);
+  return encode_wide(*wide, mesh, executor);
 }
 
 TEST(Layouts, EveryLayoutOfEveryMeshIsValid) {
@@ -99,10 +99,10 @@ TEST(Layouts, RefuseWhatTheyCanNotHold) {
   auto wide = optimizers::collapse_to_wide(tree, {.width = 8}, executor);
   ASSERT_TRUE(wide);
   wide->width = 5;
-  EXPECT_EQ(encode_wide(*wide, tree.references.span(), mesh, executor).error().code, ErrorCode::invalid_argument);
+  EXPECT_EQ(encode_wide(*wide, mesh, executor).error().code, ErrorCode::invalid_argument);
   wide->width = 8;
   wide->children[0].count = 33;
-  EXPECT_EQ(encode_wide(*wide, tree.references.span(), mesh, executor).error().code, ErrorCode::too_large);
+  EXPECT_EQ(encode_wide(*wide, mesh, executor).error().code, ErrorCode::too_large);
   TriangleMesh shorter = mesh;
   shorter.triangles.resize(50);
   EXPECT_EQ(encode_linear(tree, shorter, executor).error().code, ErrorCode::out_of_range);

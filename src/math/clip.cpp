@@ -1,0 +1,83 @@
+#include "math/clip.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace boxwood {
+namespace {
+
+/// The largest float that is not above x, and the smallest that is not below it.
+float round_down(double x) {
+  const float f = static_cast<float>(x);
+  return static_cast<double>(f) > x ? std::nextafter(f, -kInfinity) : f;
+}
+float round_up(double x) {
+  const float f = static_cast<float>(x);
+  return static_cast<double>(f) < x ? std::nextafter(f, kInfinity) : f;
+}
+
+}  // namespace
+
+ConvexPolygon::ConvexPolygon(const Triangle& triangle) {
+  const Vec3* const vertices[] = {&triangle.v0, &triangle.v1, &triangle.v2};
+  for (int axis = 0; axis < 3; ++axis) {
+    double largest = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double x = (*vertices[i])[axis];
+      corners_[i][static_cast<std::size_t>(axis)] = x;
+      largest = std::max(largest, std::fabs(x));
+    }
+    // Each cut adds less than four roundings to a corner, and there are at most eight cuts.
+    error_[static_cast<std::size_t>(axis)] = 32 * std::numeric_limits<double>::epsilon() * largest;
+  }
+}
+
+void ConvexPolygon::clip(int axis, float position, bool upper) {
+  const auto a = static_cast<std::size_t>(axis);
+  const double plane = position;
+  const auto outside = [&](const Point& p) { return upper ? p[a] > plane : p[a] < plane; };
+  const auto begin = corners_.begin(), end = corners_.begin() + size_;
+  if (std::none_of(begin, end, outside)) return;
+  std::array<Point, kMostCorners> kept;
+  int count = 0;
+  for (int i = 0; i < size_; ++i) {
+    const Point& from = corners_[static_cast<std::size_t>(i)];
+    const Point& to = corners_[static_cast<std::size_t>(i + 1 == size_ ? 0 : i + 1)];
+    if (!outside(from)) kept[static_cast<std::size_t>(count++)] = from;
+    if (outside(from) == outside(to) || from[a] == plane || to[a] == plane) continue;
+    // From the lower corner, so that both polygons at an edge get the same point.
+    const Point &low = from < to ? from : to, &high = from < to ? to : from;
+    const double share = (plane - low[a]) / (high[a] - low[a]);
+    Point& cut = kept[static_cast<std::size_t>(count++)];
+    for (std::size_t k = 0; k < 3; ++k) cut[k] = low[k] + share * (high[k] - low[k]);
+    cut[a] = plane;
+    assert(count < kMostCorners);
+  }
+  corners_ = kept;
+  size_ = count;
+}
+
+void ConvexPolygon::clip(const Box& box) {
+  for (int axis = 0; axis < 3 && size_ > 0; ++axis) {
+    clip(axis, box.lower[axis], false);
+    clip(axis, box.upper[axis], true);
+  }
+}
+
+Box ConvexPolygon::bounds() const {
+  Box box;
+  if (size_ == 0) return box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    double lower = corners_[0][a], upper = lower;
+    for (int i = 1; i < size_; ++i) {
+      lower = std::min(lower, corners_[static_cast<std::size_t>(i)][a]);
+      upper = std::max(upper, corners_[static_cast<std::size_t>(i)][a]);
+    }
+    box.lower[axis] = round_down(lower - error_[a]);
+    box.upper[axis] = round_up(upper + error_[a]);
+  }
+  return box;
+}
+
+}  // namespace boxwood

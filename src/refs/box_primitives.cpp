@@ -1,0 +1,24 @@
+// Primitives of which only their boxes are known.
+#include "boxwood/refs.h"
+#include "math/clip.h"
+
+namespace boxwood::refs {
+namespace {
+
+class BoxPrimitives final : public Primitives {
+ public:
+  Box clip(const Reference& reference, const Box& box) const override { return intersection(reference.box(), box); }
+
+  void cut(const Reference& reference, int axis, float position, Box& left, Box& right) const override {
+    left = right = reference.box();
+    left.upper[axis] = right.lower[axis] = position;
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<const Primitives> box_primitives() {
+  return std::make_shared<BoxPrimitives>();
+}
+
+}  // namespace boxwood::refs
