@@ -20,12 +20,12 @@ class TrianglePrimitives final : public Primitives {
 
   void cut(const Reference& reference, int axis, float position, Box& left, Box& right) const override {
     const Triangle triangle = mesh_.triangle(reference.primitive);
-    const Box box = reference.box();
+    const Box whole = triangle.bounds(), box = reference.box();
     Box below = box, above = box;
     below.upper[axis] = above.lower[axis] = position;
     ConvexPolygon part(triangle);
     // A reference that was never split has the triangle's own box: nothing to clip.
-    if (!box.contains(triangle.bounds())) part.clip(box);
+    if (!box.contains(whole)) part.clip(box);
     if (part.is_empty()) {  // the box touches the triangle by less than a rounding error
       left = below, right = above;
       return;
@@ -34,8 +34,8 @@ class TrianglePrimitives final : public Primitives {
     part.clip(axis, position, true);
     upper_part.clip(axis, position, false);
     // A side without corners may hold a rounding error's worth of the triangle, so the other side then gets all.
-    left = intersection(part.bounds(), upper_part.is_empty() ? box : below);
-    right = intersection(upper_part.bounds(), part.is_empty() ? box : above);
+    left = intersection(intersection(part.bounds(), whole), upper_part.is_empty() ? box : below);
+    right = intersection(intersection(upper_part.bounds(), whole), part.is_empty() ? box : above);
   }
 
  private:
