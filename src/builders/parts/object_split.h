@@ -27,4 +27,12 @@ struct ObjectSplit {
 ObjectSplit best_object_split(std::span<const refs::Reference> references, int bins, float area_scale,
                               Executor& executor);
 
+/// Fills in references, bounds and spare of both sides and frees those of the range.
+inline void sift_objects(SplittingRange& range, const ObjectSplit& split, Executor& executor, SplittingRange& left,
+                         SplittingRange& right) {
+  const std::size_t left_count = split.bins.left_count, right_count = range.size() - left_count;
+  const auto sides = [&](const refs::Reference& reference) { return split.sides(reference); };
+  sift(range, left_count, right_count, executor, sides, left, right);
+}
+
 }  // namespace boxwood::builders

@@ -225,14 +225,6 @@ class AxisSweep {
 
 }  // namespace
 
-Sides PlaneSplit::sides(const refs::Reference& reference, const refs::Primitives& primitives) const {
-  if (is_left(reference)) return Sides::only_left(reference);
-  if (is_right(reference)) return Sides::only_right(reference);
-  Sides sides;
-  primitives.cut(reference, axis, position, sides.left, sides.right);
-  return sides;
-}
-
 SweepResult sweep_planes(const SweepInput& input, Executor& executor) {
   AxisEvents events[3];
   make_events(input.references, executor, events);

@@ -65,9 +65,7 @@ class SpatialSplitFinder {
       const auto sides = [&](const refs::Reference& reference) { return split.plane.sides(reference, primitives_); };
       sift(range, split.plane.left, split.plane.right, executor, sides, left, right);
     } else if (split.kind == SpatialSplit::Kind::objects) {
-      const std::size_t left_count = split.objects.bins.left_count;
-      const auto sides = [&](const refs::Reference& reference) { return split.objects.sides(reference); };
-      sift(range, left_count, range.size() - left_count, executor, sides, left, right);
+      sift_objects(range, split.objects, executor, left, right);
     } else {
       right.references = std::move(range.references);  // all on one side: the driver halves them
     }
