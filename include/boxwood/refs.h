@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "boxwood/base.h"
 #include "boxwood/math.h"
@@ -37,6 +38,10 @@ class Primitives {
   /// Both boxes are rounded outwards, lie in the reference's box and together hold all of it; one of them is empty when
   /// nothing lies on its side.
   virtual void cut(const Reference& reference, int axis, float position, Box& left, Box& right) const = 0;
+  /// Boxes of what several planes at increasing positions inside the reference's box make of it: parts[i] lies below
+  /// positions[i], the last one above all; empty where there is nothing. For pricing splits: not rounded outwards.
+  virtual void chop(const Reference& reference, int axis, std::span<const float> positions,
+                    std::span<Box> parts) const = 0;
 };
 
 /// The primitives of a triangle mesh. Reads the mesh's arrays, which must outlive it. Only usable triangles may be

@@ -5,6 +5,8 @@
 #include "builders/parts/spatial_bins.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "builders/parts/area_scale.h"
 
@@ -16,13 +18,10 @@ SpatialBins::SpatialBins(const Box& region, int count)
   for (int axis = 0; axis < 3; ++axis) {
     const float scale = static_cast<float>(count) / extent[axis];
     bins_per_length_[axis] = std::isfinite(scale) ? scale : 0;  // 0: the region is flat, all is in one bin
+    for (int i = 0; i < count; ++i)
+      borders_[axis][static_cast<std::size_t>(i)] =
+          region.lower[axis] + static_cast<float>(i) / static_cast<float>(count) * extent[axis];
   }
-}
-
-float SpatialBins::border(int axis, int bin) const {
-  const float share = static_cast<float>(bin) / static_cast<float>(count_);
-  return bin == count_ ? region_.upper[axis]
-                       : region_.lower[axis] + share * (region_.upper[axis] - region_.lower[axis]);
 }
 
 /// The last bin whose lower border is not above the position.
@@ -45,21 +44,15 @@ void SpatialBins::add(int axis, const refs::Reference& reference, const refs::Pr
   while (last > first && border(axis, last) >= reference.upper[axis]) --last;
   ++bin(axis, first).begins;
   ++bin(axis, last).ends;
-  refs::Reference rest = reference;
-  for (int i = first; i < last; ++i) {
-    const float position = border(axis, i + 1);
-    if (position <= rest.lower[axis]) continue;
-    if (position >= rest.upper[axis]) {
-      bin(axis, i).box.grow(rest.box());
-      return;
-    }
-    Box below, above;
-    primitives.cut(rest, axis, position, below, above);
-    bin(axis, i).box.grow(below);
-    if (above.is_empty()) return;
-    rest.lower = above.lower, rest.upper = above.upper;
+  if (first == last) {
+    bin(axis, first).box.grow(reference.box());
+    return;
   }
-  bin(axis, last).box.grow(rest.box());
+  const std::size_t cuts = static_cast<std::size_t>(last - first);
+  const std::span<const float> borders(borders_[axis].data() + first + 1, cuts);
+  std::array<Box, kMostSpatialBins> parts;
+  primitives.chop(reference, axis, borders, {parts.data(), cuts + 1});
+  for (std::size_t i = 0; i <= cuts; ++i) bin(axis, first + static_cast<int>(i)).box.grow(parts[i]);
 }
 
 void SpatialBins::add(const SpatialBins& other) {

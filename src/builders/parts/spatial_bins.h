@@ -2,12 +2,15 @@
 // found by the surface area heuristic.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "boxwood/refs.h"
 #include "builders/parts/plane_split.h"
 
 namespace boxwood::builders {
+
+inline constexpr int kMostSpatialBins = 256;
 
 /// A plane between two bins, with tight boxes around what lies on its sides.
 struct SpatialBinSplit {
@@ -17,7 +20,7 @@ struct SpatialBinSplit {
 
 class SpatialBins {
  public:
-  /// `count` bins of equal width on each axis of `region`; at least 2.
+  /// `count` bins of equal width on each axis of `region`; 2 to kMostSpatialBins.
   SpatialBins(const Box& region, int count);
 
   void add(const refs::Reference& reference, const refs::Primitives& primitives);
@@ -32,8 +35,8 @@ class SpatialBins {
     std::uint32_t begins = 0, ends = 0;  ///< references whose first (last) bin it is
   };
 
-  /// The lower border of a bin; that of bin `count_` ends the region.
-  float border(int axis, int bin) const;
+  /// The lower border of a bin.
+  float border(int axis, int bin) const { return borders_[axis][static_cast<std::size_t>(bin)]; }
   int bin_at(int axis, float position) const;
   Bin& bin(int axis, int i) { return bins_[static_cast<std::size_t>(axis * count_ + i)]; }
   const Bin& bin(int axis, int i) const { return bins_[static_cast<std::size_t>(axis * count_ + i)]; }
@@ -43,6 +46,7 @@ class SpatialBins {
   Box region_;
   int count_;
   float bins_per_length_[3];
+  std::array<float, kMostSpatialBins> borders_[3];
   std::vector<Bin> bins_;
 };
 

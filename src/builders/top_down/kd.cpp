@@ -56,6 +56,7 @@ class KdFinder {
                                                .empty_factor = empty_factor_},
                                               executor);
       split.plane = planes.best;
+      split.kind = KdSplit::Kind::leaf;
       if (leaf_rule_.prefers_leaf(count, area, planes.best.cost)) return split;
       const bool pays = planes.best.cost < area * count;
       if (!pays) return whole(split, range, executor);

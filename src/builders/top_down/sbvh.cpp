@@ -8,6 +8,7 @@
 // have become by earlier decisions, so that it does not depend on any order; the references of the tree are limited
 // (`growth`), each range may use its share. O(n log n) while references pass few bins; parallel over ranges and chunks;
 // the same bits for every number of threads.
+#include <algorithm>
 #include <memory>
 
 #include "builders/builder_list.h"
@@ -115,14 +116,16 @@ class SbvhFinder {
   }
 
   SpatialBins fill_bins(const SplittingRange& range, Executor& executor) const {
-    SpatialBins bins(range.bounds, spatial_bins_);
+    const auto count =
+        static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(spatial_bins_), 4 + 2 * range.size()));
+    SpatialBins bins(range.bounds, count);
     if (range.size() <= kLargeRange) {
       for (const refs::Reference& reference : range.references) bins.add(reference, primitives_);
       return bins;
     }
     std::vector<std::unique_ptr<SpatialBins>> chunks((range.size() + kChunk - 1) / kChunk);
     executor.for_chunks(range.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-      chunks[chunk] = std::make_unique<SpatialBins>(range.bounds, spatial_bins_);
+      chunks[chunk] = std::make_unique<SpatialBins>(range.bounds, count);
       for (std::size_t i = begin; i < end; ++i) chunks[chunk]->add(range.references[i], primitives_);
     });
     for (const auto& chunk : chunks) bins.add(*chunk);
@@ -147,7 +150,7 @@ constexpr OptionSpec kOptions[] = {
      .description = "bins of space per axis for spatial splits (stich2009)",
      .default_value = 32,
      .lowest = 2,
-     .highest = 1024,
+     .highest = kMostSpatialBins,
      .integer = true},
     {.key = "alpha",
      .description = "overlap of the sides, by the root's area, from which on spatial splits are tried (stich2009)",
