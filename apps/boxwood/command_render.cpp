@@ -15,6 +15,7 @@ namespace {
 struct Options {
   CommonOptions common;
   PipelineOptions pipeline;
+  InputOptions input_options;
   std::string input, output, camera;
   std::string size = "1024x1024";
   std::string shade = "normals";
@@ -29,7 +30,7 @@ Status run_render(const Options& options) {
   const int width = size->first, height = size->second;
   for (const std::string& path : {options.output, options.common.json})
     if (Status status = check_output_folder(path); !status) return status;
-  const auto input = load_usable_input(options.input, session);
+  const auto input = load_usable_input(options.input, options.input_options, session);
   if (!input) return input.error();
   View view = input->view;
   if (!options.camera.empty()) {
@@ -43,7 +44,7 @@ Status run_render(const Options& options) {
   const double start = now();
   auto image = [&] {
     const Progress progress(fmt::format("rendering {}x{}", width, height), session.shows_progress());
-    return render::render(pipeline->accel, view, width, height, *shade);
+    return render::render(pipeline->accel, input->turned(view), width, height, *shade);
   }();
   if (!image) return image.error();
   const double seconds = now() - start;
@@ -61,6 +62,7 @@ Status run_render(const Options& options) {
   report["options"]["size"] = options.size;
   report["camera"] = camera_text(view);
   report["excluded"] = pipeline->excluded;
+  report["references"] = pipeline->accel.reference_count();
   report["build_ms"] = 1e3 * pipeline->build_seconds;
   report["primary_rays"] = rays;
   report["render_ms"] = 1e3 * seconds;
@@ -75,6 +77,7 @@ void add_render_command(CLI::App& program, Run& run) {
   auto options = std::make_shared<Options>();
   CLI::App& command = *program.add_subcommand("render", "Draw a mesh, or a heat map of what its rays cost, as PNG");
   command.add_option("INPUT", options->input, kInputHelp)->required()->type_name("");
+  options->input_options.add_to(command);
   command.add_option("-o,--output", options->output, "Picture to write")->type_name("OUT.png")->required();
   command.add_option("--shade", options->shade, "normals, ao, depth, nodes, primitives or ids")
       ->type_name("NAME")
