@@ -46,7 +46,7 @@ Result<builders::BuildOptions> PipelineOptions::build_options() const {
 
 Result<BuiltTree> build_tree(const MeshView& mesh, const refs::Presplit& presplit,
                              const builders::BuildOptions& options, Executor& executor,
-                             const std::function<void(double)>& progress) {
+                             const std::function<void(double)>& progress, std::vector<std::uint8_t>* split) {
   BuiltTree built;
   const double start = now();
   auto references = refs::make_references(mesh, executor);
@@ -56,9 +56,18 @@ Result<BuiltTree> build_tree(const MeshView& mesh, const refs::Presplit& prespli
   references = refs::apply_presplit(std::move(*references), mesh, presplit, executor, &built.presplit);
   if (!references) return references.error();
   built.presplit_seconds = now() - start - built.reference_seconds;
+  std::vector<std::uint8_t> seen(split ? references->primitive_count : 0), repeated = seen;
+  const auto mark = [&](std::uint32_t primitive) { (seen[primitive] ? repeated : seen)[primitive] = 1; };
+  if (split)
+    for (const refs::Reference& reference : references->references) mark(reference.primitive);
   auto tree = builders::build(std::move(*references), options, builders::BuildContext{executor, progress, nullptr});
   if (!tree) return tree.error();
   built.tree = std::move(*tree);
+  if (split) {
+    seen.assign(seen.size(), 0);
+    for (const std::uint32_t primitive : built.tree.references) mark(primitive);
+    *split = std::move(repeated);
+  }
   built.tree_seconds = now() - start - built.reference_seconds - built.presplit_seconds;
   return built;
 }
@@ -86,7 +95,8 @@ Result<std::vector<std::pair<std::string, std::string>>> echo_options(const buil
   return echo;
 }
 
-Result<Pipeline> run_pipeline(const Input& input, const PipelineOptions& options, const Session& session) {
+Result<Pipeline> run_pipeline(const Input& input, const PipelineOptions& options, const Session& session,
+                              std::vector<std::uint8_t>* split) {
   const auto build_options = options.build_options();
   if (!build_options) return build_options.error();
   const auto presplit = refs::parse_presplit(options.presplit);
@@ -96,8 +106,8 @@ Result<Pipeline> run_pipeline(const Input& input, const PipelineOptions& options
   if (const auto layout = layouts::find(options.layout); !layout) return layout.error();
 
   Progress progress("building " + options.builder, session.shows_progress());
-  auto built = build_tree(input.mesh, *presplit, *build_options, *session.executor(),
-                          [&](double share) { progress.update(share); });
+  auto built = build_tree(
+      input.mesh, *presplit, *build_options, *session.executor(), [&](double share) { progress.update(share); }, split);
   if (!built) return built.error();
   auto encoded = encode_tree(input.mesh, built->tree, options.layout, session.executor());
   if (!encoded) return encoded.error();

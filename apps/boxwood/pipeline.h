@@ -38,10 +38,12 @@ struct BuiltTree {
   double seconds() const { return reference_seconds + presplit_seconds + tree_seconds; }
 };
 
-/// References, their pre-split, then the tree.
+/// References, their pre-split, then the tree. `split`, if any, gets a 1 for each primitive that now has several
+/// references, by the pre-split or by the builder, and a 0 for the others.
 Result<BuiltTree> build_tree(const MeshView& mesh, const refs::Presplit& presplit,
                              const builders::BuildOptions& options, Executor& executor,
-                             const std::function<void(double)>& progress = {});
+                             const std::function<void(double)>& progress = {},
+                             std::vector<std::uint8_t>* split = nullptr);
 
 struct BuiltAccel {
   Accel accel;
@@ -58,8 +60,9 @@ struct Pipeline {
   double build_seconds = 0;
   std::vector<std::pair<std::string, std::string>> echo;  ///< resolved options, builder and layout first
 };
-/// Builds with a progress bar; warns about excluded triangles; notes what it did.
-Result<Pipeline> run_pipeline(const Input& input, const PipelineOptions& options, const Session& session);
+/// Builds with a progress bar; warns about excluded triangles; notes what it did. `split` as for build_tree.
+Result<Pipeline> run_pipeline(const Input& input, const PipelineOptions& options, const Session& session,
+                              std::vector<std::uint8_t>* split = nullptr);
 
 /// The resolved options with builder, pre-split and layout in front: what reports echo.
 Result<std::vector<std::pair<std::string, std::string>>> echo_options(const builders::BuildOptions& options,

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "boxwood/refs.h"
+#include "refs/crowding.h"
 
 namespace boxwood::refs {
 
@@ -29,11 +30,14 @@ struct EdgeRule {
   static constexpr std::size_t kNone = 3;
 
   double threshold = 0;  ///< edges whose box has a larger volume are cut
+  /// Counts volume where it is crowded for more, elsewhere for less; null: everywhere alike.
+  std::shared_ptr<const Crowding> crowding = {};
 
   /// Volume of the edge's box; 0 where the edge is not to be cut: it is small enough, or its midpoint is one of its
   /// ends for want of digits.
   double excess(Vec3 a, Vec3 b) const {
-    const double volume = std::fabs((double(b.x) - a.x) * (double(b.y) - a.y) * (double(b.z) - a.z));
+    double volume = std::fabs((double(b.x) - a.x) * (double(b.y) - a.y) * (double(b.z) - a.z));
+    if (crowding && volume * Crowding::kMost > threshold) volume *= crowding->around({minimum(a, b), maximum(a, b)});
     if (!(volume > threshold)) return 0;
     const Vec3 m = midpoint(a, b);
     return m == a || m == b ? 0 : volume;

@@ -5,6 +5,7 @@
 
 namespace boxwood::refs {
 
-extern const PresplitInfo edge_volume_presplit, automatic_edge_volume_presplit, early_split_clipping_presplit;
+extern const PresplitInfo edge_volume_presplit, automatic_edge_volume_presplit, local_edge_volume_presplit,
+    early_split_clipping_presplit;
 
 }  // namespace boxwood::refs
