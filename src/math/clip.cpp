@@ -3,20 +3,9 @@
 #include <algorithm>
 #include <cassert>
 
+#include "math/rounding.h"
+
 namespace boxwood {
-namespace {
-
-/// The largest float that is not above x, and the smallest that is not below it.
-float round_down(double x) {
-  const float f = static_cast<float>(x);
-  return static_cast<double>(f) > x ? std::nextafter(f, -kInfinity) : f;
-}
-float round_up(double x) {
-  const float f = static_cast<float>(x);
-  return static_cast<double>(f) < x ? std::nextafter(f, kInfinity) : f;
-}
-
-}  // namespace
 
 ConvexPolygon::ConvexPolygon(const Triangle& triangle) {
   const Vec3* const vertices[] = {&triangle.v0, &triangle.v1, &triangle.v2};
