@@ -34,7 +34,7 @@ class Chooser {
     double cost = left_area * static_cast<double>(counts.left) + right_area * static_cast<double>(counts.right);
     if (counts.left == 0 || counts.right == 0) {
       const bool inside = input_.region.lower[axis_] < position && position < input_.region.upper[axis_];
-      if (!inside || !(input_.empty_factor < 1)) return;
+      if (!inside || !input_.empty_sides) return;
       cost *= input_.empty_factor;
     }
     if (!(cost < result_.best.cost)) return;
@@ -92,9 +92,11 @@ class AxisSweep {
   }
 
  private:
+  /// With the areas of both sides' boxes, without [0] and with [1] what is flat in the plane.
   struct Stop : PlaneStop {
-    Box left, right;  ///< tight boxes without what is flat here
-    Box flat;         ///< what is flat here
+    float left[2], right[2];
+    double most_cost = 0;  ///< what it costs at most, as long as its areas are not exact
+    bool exact = false;
   };
 
   /// Without what is flat in the plane.
@@ -114,35 +116,85 @@ class AxisSweep {
     });
   }
 
+  /// Cutting is slow, so it is done only at stops that may be the best one: those that cost less with boxes of whole
+  /// references only than the best one does with uncut boxes of the cut ones.
   void sweep_tight() {
-    for_each_stop(events_, [&](const PlaneStop& stop) { stops_.push_back({stop, {}, {}, {}}); });
-    SideBox left(input_.primitives, axis_, true);
-    for (Stop& stop : stops_) {
-      for (std::uint32_t i = stop.ends; i < stop.ends_to; ++i) left.add(reference(events_.ends[i]));
-      left.move_to(stop.position);
-      stop.left = left.at(stop.position, stop.begins > stop.ends_to);
-      for (std::uint32_t i = stop.flats; i < stop.flats_to; ++i) stop.flat.grow(reference(events_.flats[i]).box());
-      for (std::uint32_t i = stop.flats; i < stop.flats_to; ++i) left.add(reference(events_.flats[i]));
-      for (std::uint32_t i = stop.begins; i < stop.begins_to; ++i) left.begin(reference(events_.begins[i]));
-    }
-    SideBox right(input_.primitives, axis_, false);
-    for (std::size_t k = stops_.size(); k-- > 0;) {
-      Stop& stop = stops_[k];
-      for (std::uint32_t i = stop.begins; i < stop.begins_to; ++i) right.add(reference(events_.begins[i]));
-      right.move_to(stop.position);
-      stop.right = right.at(stop.position, stop.begins > stop.ends_to);
-      for (std::uint32_t i = stop.flats; i < stop.flats_to; ++i) right.add(reference(events_.flats[i]));
-      for (std::uint32_t i = stop.ends; i < stop.ends_to; ++i) right.begin(reference(events_.ends[i]));
-    }
+    for_each_stop(events_, [&](const PlaneStop& stop) { stops_.push_back({stop, {}, {}}); });
+    add_most_costs();
+    double limit = kInfinity;
+    for (const Stop& stop : stops_)
+      if (may_be_taken(stop)) limit = std::min(limit, stop.most_cost);
+    walk_up(
+        WholeBox(axis_, true, false), [](const Stop&) { return true; }, &Stop::left);
+    walk_down(
+        WholeBox(axis_, false, false), [](const Stop&) { return true; }, &Stop::right);
+    for (Stop& stop : stops_) stop.exact = least_cost(stop) <= limit;
+    const auto is_wanted = [](const Stop& stop) { return stop.exact; };
+    walk_up(SideBox(input_.primitives, axis_, true), is_wanted, &Stop::left);
+    walk_down(SideBox(input_.primitives, axis_, false), is_wanted, &Stop::right);
     for (const Stop& stop : stops_) {
+      if (!stop.exact) continue;
       const Counts here = counts(stop);
       const std::size_t flat = stop.flats_to - stop.flats;
-      chooser_.offer(stop.position, true, {here.left + flat, here.right}, area(merge(stop.left, stop.flat)),
-                     area(stop.right));
-      if (flat != 0)
-        chooser_.offer(stop.position, false, {here.left, here.right + flat}, area(stop.left),
-                       area(merge(stop.right, stop.flat)));
+      chooser_.offer(stop.position, true, {here.left + flat, here.right}, stop.left[1], stop.right[0]);
+      if (flat != 0) chooser_.offer(stop.position, false, {here.left, here.right + flat}, stop.left[0], stop.right[1]);
     }
+  }
+
+  void add_most_costs() {
+    const auto all = [](const Stop&) { return true; };
+    walk_up(WholeBox(axis_, true, true), all, &Stop::left);
+    walk_down(WholeBox(axis_, false, true), all, &Stop::right);
+    for (Stop& stop : stops_) stop.most_cost = least_cost(stop);
+  }
+
+  /// Does the plane leave something on both sides, without adding too much?
+  bool may_be_taken(const Stop& stop) const {
+    const Counts here = counts(stop);
+    const std::size_t flat = stop.flats_to - stop.flats;
+    return here.left != 0 && here.right != 0 &&
+           here.left + here.right + flat - input_.references.size() <= input_.spare;
+  }
+
+  /// By the areas as they are, with flat boxes on the cheaper side.
+  double least_cost(const Stop& stop) const {
+    const Counts here = counts(stop);
+    const auto left = static_cast<double>(here.left), right = static_cast<double>(here.right);
+    const auto flat = static_cast<double>(stop.flats_to - stop.flats);
+    return std::min(stop.left[1] * (left + flat) + stop.right[0] * right,
+                    stop.left[0] * left + stop.right[1] * (right + flat));
+  }
+
+  /// Sweeps up with a box of the side below the plane, and stores its areas at the wanted stops.
+  template <class Side, class Wanted>
+  void walk_up(Side side, Wanted is_wanted, float (Stop::*areas)[2]) {
+    for (Stop& stop : stops_) {
+      for (std::uint32_t i = stop.ends; i < stop.ends_to; ++i) side.add(reference(events_.ends[i]));
+      if (is_wanted(stop)) (stop.*areas)[0] = side_area(side, stop);
+      for (std::uint32_t i = stop.flats; i < stop.flats_to; ++i) side.add(reference(events_.flats[i]));
+      if (is_wanted(stop)) (stop.*areas)[1] = area(side.at(stop.position, cuts(stop)));
+      for (std::uint32_t i = stop.begins; i < stop.begins_to; ++i) side.begin(reference(events_.begins[i]));
+    }
+  }
+
+  /// The same for the side above, sweeping down.
+  template <class Side, class Wanted>
+  void walk_down(Side side, Wanted is_wanted, float (Stop::*areas)[2]) {
+    for (std::size_t k = stops_.size(); k-- > 0;) {
+      Stop& stop = stops_[k];
+      for (std::uint32_t i = stop.begins; i < stop.begins_to; ++i) side.add(reference(events_.begins[i]));
+      if (is_wanted(stop)) (stop.*areas)[0] = side_area(side, stop);
+      for (std::uint32_t i = stop.flats; i < stop.flats_to; ++i) side.add(reference(events_.flats[i]));
+      if (is_wanted(stop)) (stop.*areas)[1] = area(side.at(stop.position, cuts(stop)));
+      for (std::uint32_t i = stop.ends; i < stop.ends_to; ++i) side.begin(reference(events_.ends[i]));
+    }
+  }
+
+  static bool cuts(const PlaneStop& stop) { return stop.begins > stop.ends_to; }
+  template <class Side>
+  float side_area(Side& side, const PlaneStop& stop) const {
+    side.move_to(stop.position);
+    return area(side.at(stop.position, cuts(stop)));
   }
 
   /// Between stops k and k + 1.
@@ -157,8 +209,8 @@ class AxisSweep {
       const Stop &from = stops_[k], &to = stops_[k + 1];
       if (from.begins_to == to.ends) continue;  // the plane would cut nothing
       const Counts here = between(k);
-      const double bound = area(merge(from.left, from.flat)) * static_cast<double>(here.left) +
-                           area(merge(to.right, to.flat)) * static_cast<double>(here.right);
+      const double bound =
+          from.left[1] * static_cast<double>(here.left) + to.right[1] * static_cast<double>(here.right);
       if (bound < chooser_.best_cost()) gaps.push_back({bound, k});
     }
     std::stable_sort(gaps.begin(), gaps.end(), [](const Gap& a, const Gap& b) { return a.bound < b.bound; });
@@ -211,10 +263,10 @@ class AxisSweep {
   }
 
   const refs::Reference& reference(PlaneEvent event) const { return input_.references[event.reference()]; }
-  double area(const Box& box) const { return scaled_half_area(box, input_.area_scale); }
+  float area(const Box& box) const { return scaled_half_area(box, input_.area_scale); }
 
-  static constexpr std::size_t kMostGaps = 4;
-  static constexpr int kParabolas = 2;
+  static constexpr std::size_t kMostGaps = 2;
+  static constexpr int kParabolas = 1;
 
   const SweepInput& input_;
   const AxisEvents& events_;

@@ -24,8 +24,8 @@ struct SweepInput {
   float area_scale = 1;     ///< lengths are multiplied by it before areas are made of them
   std::uint64_t spare = 0;  ///< references that a split may add
   SideAreas areas = SideAreas::region;
-  /// Below 1: planes with nothing on one side count too (inside the region only), their cost times this.
-  double empty_factor = 1;
+  bool empty_sides = false;  ///< planes inside the region with nothing on one side count too,
+  double empty_factor = 1;   ///< their cost times this
 };
 
 struct SweepResult {

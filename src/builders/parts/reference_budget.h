@@ -29,15 +29,21 @@ inline std::uint64_t spare_references(std::uint64_t count, double growth) {
 }
 
 /// What both sides of a split may add, when `spare` could be added before it to `before` references. They get parts of
-/// what is left in proportion to their references. `left + right - before` must not be above `spare`.
+/// what is left in proportion to their weights (not negative), of which their numbers of references are the plainest.
+/// `left + right - before` must not be above `spare`.
 struct SpareShares {
   std::uint64_t left, right;
 };
-inline SpareShares share_rest(std::uint64_t spare, std::uint64_t before, std::uint64_t left, std::uint64_t right) {
+inline SpareShares share_rest(std::uint64_t spare, std::uint64_t before, std::uint64_t left, std::uint64_t right,
+                              double left_weight, double right_weight) {
   const std::uint64_t rest = spare - std::min(spare, left + right - std::min(before, left + right));
-  const auto to_left = std::min(rest, static_cast<std::uint64_t>(static_cast<double>(rest) * static_cast<double>(left) /
-                                                                 static_cast<double>(left + right)));
+  if (!(left_weight + right_weight > 0)) left_weight = right_weight = 1;
+  const double left_share = left_weight / (left_weight + right_weight);
+  const auto to_left = std::min(rest, static_cast<std::uint64_t>(static_cast<double>(rest) * left_share));
   return {to_left, rest - to_left};
+}
+inline SpareShares share_rest(std::uint64_t spare, std::uint64_t before, std::uint64_t left, std::uint64_t right) {
+  return share_rest(spare, before, left, right, static_cast<double>(left), static_cast<double>(right));
 }
 
 }  // namespace boxwood::builders

@@ -7,6 +7,32 @@
 
 namespace boxwood::builders {
 
+/// A side's box where the plane is at `position`; `cuts`: it cuts references.
+inline Box side_at(Box box, int axis, bool below, float position, bool cuts) {
+  if (cuts && !box.is_empty()) (below ? box.upper : box.lower)[axis] = position;
+  return box;
+}
+
+/// Without cutting: bounds of a SideBox from inside and outside, with the same functions.
+class WholeBox {
+ public:
+  /// `all`: references count whole from where they begin (a box that is never too small), else from where they end (one
+  /// that is never too large).
+  WholeBox(int axis, bool below, bool all) : axis_(axis), below_(below), all_(all) {}
+
+  void add(const refs::Reference& reference) { box_.grow(reference.box()); }
+  void begin(const refs::Reference& reference) {
+    if (all_) box_.grow(reference.box());
+  }
+  void move_to(float) {}
+  Box at(float position, bool cuts) const { return side_at(box_, axis_, below_, position, cuts); }
+
+ private:
+  int axis_;
+  bool below_, all_;
+  Box box_;
+};
+
 /// Parts only grow as the plane moves on, so a reference whose box across the axis is already covered need not be cut
 /// again: what stays in the queue (the priority queue of Popov et al. 2009, 5.2) is what may still widen the box.
 class SideBox {
@@ -23,6 +49,8 @@ class SideBox {
     Box first = reference.box();
     (below_ ? first.upper : first.lower)[axis_] = (below_ ? first.lower : first.upper)[axis_];
     if (box_.contains(first)) return;
+    if (queue_.size() == kMostCut)
+      std::erase_if(queue_, [&](const refs::Reference* waiting) { return covers_across(*waiting); });
     if (queue_.size() < kMostCut)
       queue_.push_back(&reference);
     else
@@ -43,11 +71,7 @@ class SideBox {
   }
 
   /// The box where the plane is now; `cuts`: it cuts references.
-  Box at(float position, bool cuts) const {
-    Box box = box_;
-    if (cuts && !box.is_empty()) (below_ ? box.upper : box.lower)[axis_] = position;
-    return box;
-  }
+  Box at(float position, bool cuts) const { return side_at(box_, axis_, below_, position, cuts); }
 
  private:
   static constexpr std::size_t kMostCut = 32;

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "builders/parts/area_scale.h"
 #include "builders/parts/splitting_driver.h"
 
 namespace boxwood::builders {
@@ -84,6 +85,18 @@ void sift(SplittingRange& range, std::size_t left_count, std::size_t right_count
     SiftedReferences::join(chunks, executor, left, right);
   }
   const SpareShares shares = share_rest(range.spare, count, left.size(), right.size());
+  left.spare = shares.left, right.spare = shares.right;
+}
+
+/// Shares out once more what both sides may add, by their area times their references: for builders that cut only where
+/// it pays, whose large nodes would otherwise be left without while small ones do not use up their shares.
+inline void share_by_area(SplittingRange& left, SplittingRange& right, float area_scale) {
+  const auto weight = [&](const SplittingRange& range) {
+    return static_cast<double>(scaled_half_area(range.bounds, area_scale)) * static_cast<double>(range.size());
+  };
+  const std::uint64_t all = left.size() + right.size();
+  const SpareShares shares =
+      share_rest(left.spare + right.spare, all, left.size(), right.size(), weight(left), weight(right));
   left.spare = shares.left, right.spare = shares.right;
 }
 

@@ -89,6 +89,8 @@ class SplittingDriver {
 
  private:
   static constexpr std::size_t kProgressSteps = 1000000;
+  /// Ranges up to this size are finished by one thread each. Cutting makes references dear, so these are small.
+  static constexpr std::size_t kOneThread = 1 << 12;
   /// Below this many ranges at once the threads share the work on each range, from here on the ranges.
   static constexpr std::size_t kManyRanges = 8;
   static constexpr std::uint32_t kSplittingDepthLimit = 96;
@@ -105,7 +107,7 @@ class SplittingDriver {
   std::vector<Children> split_round(std::vector<SplittingRange>& ranges) {
     std::vector<Children> children(ranges.size());
     const auto split = [&](std::size_t i, Executor& executor) {
-      if (ranges[i].size() > kLargeRange)
+      if (ranges[i].size() > kOneThread)
         children[i].split = split_or_leaf(ranges[i], executor, children[i].left, children[i].right);
     };
     if (ranges.size() < kManyRanges) {

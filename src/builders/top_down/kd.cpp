@@ -53,6 +53,7 @@ class KdFinder {
                                                .region = split.cell,
                                                .area_scale = area_scale_,
                                                .spare = range.spare,
+                                               .empty_sides = true,
                                                .empty_factor = empty_factor_},
                                               executor);
       split.plane = planes.best;
@@ -100,7 +101,7 @@ constexpr OptionSpec kOptions[] = {
     {.key = "empty.bonus",
      .description = "by which share planes that cut off empty space are taken for cheaper (wald2006)",
      .default_value = 0.2,
-     .lowest = 0.001,
+     .lowest = 0,
      .highest = 0.999},
     growth_option(8),
     leaf_max_option(16, "most references in a leaf; 0: no limit but the cost")};

@@ -6,8 +6,8 @@
 //
 // Ours differs: whether to unsplit is decided for each reference against the sides as the bins give them, not as they
 // have become by earlier decisions, so that it does not depend on any order; the references of the tree are limited
-// (`growth`), each range may use its share. O(n log n) while references pass few bins; parallel over ranges and chunks;
-// the same bits for every number of threads.
+// (`growth`), each range has a share by its area times its references. O(n log n) while references pass few bins;
+// parallel over ranges and chunks; the same bits for every number of threads.
 #include <algorithm>
 #include <memory>
 
@@ -104,7 +104,9 @@ class SbvhFinder {
       sift_objects(range, split.objects, executor, left, right);
     } else {
       right.references = std::move(range.references);  // all on one side: the driver halves them
+      return;
     }
+    share_by_area(left, right, area_scale_);
   }
 
  private:
@@ -157,7 +159,7 @@ constexpr OptionSpec kOptions[] = {
      .default_value = 1e-5,
      .lowest = 0,
      .highest = 1},
-    growth_option(1.5),
+    growth_option(2),
     leaf_max_option(16, "most references in a leaf; 0: no limit but the cost")};
 
 }  // namespace
