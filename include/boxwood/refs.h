@@ -37,6 +37,8 @@ class Primitives {
   /// Both boxes are rounded outwards, lie in the reference's box and together hold all of it; one of them is empty when
   /// nothing lies on its side.
   virtual void cut(const Reference& reference, int axis, float position, Box& left, Box& right) const = 0;
+  /// Pairs of primitives that share an edge, by rank, as mesh::edge_links gives them. By default there are none.
+  virtual AlignedBuffer<mesh::EdgeLink> edge_links(mesh::Weld weld, Executor& executor) const;
 };
 
 /// The primitives of a triangle mesh. Reads the mesh's arrays, which must outlive it. Only usable triangles may be

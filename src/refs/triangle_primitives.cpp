@@ -38,6 +38,10 @@ class TrianglePrimitives final : public Primitives {
     right = intersection(intersection(upper_part.bounds(), whole), part.is_empty() ? box : above);
   }
 
+  AlignedBuffer<mesh::EdgeLink> edge_links(mesh::Weld weld, Executor& executor) const override {
+    return mesh::edge_links(mesh_, weld, executor);
+  }
+
  private:
   MeshView mesh_;
 };

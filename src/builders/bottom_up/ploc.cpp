@@ -1,11 +1,11 @@
 // PLOC, parallel locally-ordered clustering (Meister and Bittner 2018, bib key ploc): references stand in the order of
 // their Morton codes; in each round every cluster looks for the one within `radius` places that makes the smallest box
-// with it, and pairs that chose each other merge. Differs from the paper: of equally small boxes the cluster whose place
-// differs in the lowest bits is taken, which makes the choice unique and pairs up equal boxes in one round; a round in
-// which fewer than a sixteenth of the clusters would merge (nested boxes can let one pair merge at a time) joins each
-// cluster with its neighbour in the order instead, which bounds the rounds and so the depth by 11 log2(n); leaves are
-// decided as clusters merge (parts/merge_forest.h). O(n * radius) for usual inputs, O(n * radius * log n) for any;
-// deterministic: new clusters are numbered in the order of their places.
+// with it, and pairs that chose each other merge. Differs from the paper: of equally small boxes the cluster whose
+// place differs in the lowest bits is taken, which makes the choice unique and pairs up equal boxes in one round; a
+// round in which fewer than a sixteenth of the clusters would merge (nested boxes can let one pair merge at a time)
+// joins each cluster with its neighbour in the order instead, which bounds the rounds and so the depth by 11 log2(n);
+// leaves are decided as clusters merge (parts/merge_forest.h). O(n * radius) for usual inputs, O(n * radius * log n)
+// for any; deterministic: new clusters are numbered in the order of their places.
 #include <algorithm>
 
 #include "builders/builder_list.h"
@@ -31,7 +31,8 @@ constexpr OptionSpec kOptions[] = {
      .lowest = 1,
      .highest = kMostRadius,
      .integer = true},
-    kMortonBitsOption, kMortonLeafMaxOption};
+    kMortonBitsOption,
+    kMortonLeafMaxOption};
 
 /// The clusters of one round in the order of the curve.
 struct Clusters {

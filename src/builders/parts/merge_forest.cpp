@@ -123,9 +123,8 @@ tree::BinaryTree MergeForest::tree(std::uint32_t root, std::size_t primitive_cou
     open.push_back(parts.right);
     open.push_back(parts.left);
   }
-  executor.for_chunks(tasks.size(), 1, [&](std::size_t task, std::size_t, std::size_t) {
-    write_subtree(tasks[task], tree);
-  });
+  executor.for_chunks(tasks.size(), 1,
+                      [&](std::size_t task, std::size_t, std::size_t) { write_subtree(tasks[task], tree); });
   return tree;
 }
 

@@ -8,7 +8,7 @@
 
 #include "boxwood/refs.h"
 #include "boxwood/tree.h"
-#include "builders/parts/radix_sort.h"
+#include "parallel/radix_sort.h"
 
 namespace boxwood::builders {
 

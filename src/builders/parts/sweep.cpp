@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "builders/parts/area_scale.h"
-#include "builders/parts/radix_sort.h"
+#include "parallel/radix_sort.h"
 
 namespace boxwood::builders {
 namespace {
