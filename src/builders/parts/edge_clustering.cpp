@@ -180,7 +180,7 @@ bool EdgeClustering::run(const Limits& limits, const BuildMonitor& monitor) {
     if (monitor.cancelled()) return false;
     const std::size_t links = links_.size();
     const std::uint32_t before = merged_;
-    if (links >= ways_.parallel_links)
+    if (links >= ways_.parallel_links && executor_.threads() >= ways_.parallel_threads)
       merge_round_in_parallel();
     else
       merge_round();

@@ -29,6 +29,7 @@ class EdgeClustering {
   /// What to do with rounds of many or few links; tests force each way. The clusters are the same for all.
   struct Ways {
     std::size_t parallel_links = std::size_t{1} << 17;  ///< a round of so many is worked on in parallel
+    int parallel_threads = 3;     ///< if there are so many threads: it takes twice the work of the sequence
     std::size_t slow_share = 16;  ///< rounds that merge fewer than one in so many links are the heaps' business
   };
 

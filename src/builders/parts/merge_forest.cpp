@@ -67,11 +67,10 @@ MergeForest::Places MergeForest::below(const Place& place) const {
           {parts.right, node + 1, place.rank + 1 + left.inner, place.first + left.count}};
 }
 
-void MergeForest::write_leaf(const Place& place, tree::BinaryTree& tree) const {
+void MergeForest::write_leaf(const Place& place, std::vector<std::uint32_t>& waiting, tree::BinaryTree& tree) const {
   const Cluster& cluster = clusters_[place.cluster];
   tree.nodes[place.node] = {cluster.box, place.first, cluster.count};
   std::uint32_t next = place.first;
-  std::vector<std::uint32_t> waiting;
   std::uint32_t current = place.cluster;
   while (true) {
     if (current >= reference_count_) {
@@ -88,6 +87,7 @@ void MergeForest::write_leaf(const Place& place, tree::BinaryTree& tree) const {
 
 void MergeForest::write_subtree(const Place& root, tree::BinaryTree& tree) const {
   std::vector<Place> waiting;
+  std::vector<std::uint32_t> waiting_in_leaf;  // empty between leaves
   Place current = root;
   while (true) {
     if (clusters_[current.cluster].inner != 0) {
@@ -97,7 +97,7 @@ void MergeForest::write_subtree(const Place& root, tree::BinaryTree& tree) const
       current = parts.left;
       continue;
     }
-    write_leaf(current, tree);
+    write_leaf(current, waiting_in_leaf, tree);
     if (waiting.empty()) return;
     current = waiting.back();
     waiting.pop_back();

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "boxwood/refs.h"
 #include "boxwood/tree.h"
@@ -54,7 +55,7 @@ class MergeForest {
   };
 
   Places below(const Place& place) const;
-  void write_leaf(const Place& place, tree::BinaryTree& tree) const;
+  void write_leaf(const Place& place, std::vector<std::uint32_t>& waiting, tree::BinaryTree& tree) const;
   void write_subtree(const Place& root, tree::BinaryTree& tree) const;
 
   std::uint32_t reference_count_;
