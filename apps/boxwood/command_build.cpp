@@ -125,6 +125,8 @@ Json build_json(const Options& options, const Session& session, const Input& inp
   report["layout_nodes"] = outcome.layout_nodes;
   report["bytes"] = outcome.bytes;
   report["tree_bytes"] = outcome.built.tree.bytes();
+  report["notes"] = Json::object();
+  for (const auto& [name, value] : outcome.built.tree.notes) report["notes"][name] = value;
   report["hash"] = hash_text(tree::hash(outcome.built.tree));
   report["valid"] = options.skip_validation ? Json() : Json(outcome.valid.has_value());
   if (!outcome.valid) report["invalid_because"] = outcome.valid.error().message;
@@ -164,6 +166,7 @@ void print_build(const Options& options, const Session& session, const Outcome& 
   line("memory", fmt::format("{:.1f} MiB in {} {} nodes; peak of the process {:.0f} MiB",
                              static_cast<double>(outcome.bytes) / (1 << 20), with_thousands(outcome.layout_nodes),
                              options.pipeline.layout, static_cast<double>(peak_memory_bytes()) / (1 << 20)));
+  for (const auto& [name, value] : outcome.built.tree.notes) line("note", fmt::format("{}: {}", name, value));
   line("hash", hash_text(tree::hash(outcome.built.tree)));
   line("valid", options.skip_validation ? "not checked"
                 : outcome.valid ? fmt::format("yes, tree and layout ({:.1f} ms)", 1e3 * outcome.validate_seconds)

@@ -97,6 +97,18 @@ void rotate(TriangleMesh& mesh, Vec3 degrees, Vec3 center);
 /// The view that sees of the turned mesh what `view` sees of the mesh.
 View rotate(const View& view, Vec3 degrees, Vec3 center);
 
+/// Two triangles that share an edge.
+struct EdgeLink {
+  std::uint32_t a, b;
+  friend bool operator==(const EdgeLink&, const EdgeLink&) = default;
+};
+/// When two triangles have a vertex in common: the same position (as weld decides), or the same index.
+enum class Weld { position, index };
+/// The links of all edges between usable triangles, in order of rank: the edge whose box has the larger area first
+/// (areas are compared to 22 bits), then the edge with the lower vertices. Three or more triangles on an edge are linked
+/// one to the next in the order of their ids. Requires check_indices to have passed. O(n), parallel, deterministic.
+AlignedBuffer<EdgeLink> edge_links(const MeshView& mesh, Weld weld, Executor& executor);
+
 // ---- Procedural scenes -------------------------------------------------------------------------------------------
 
 /// How to make a scene. `triangles` is a target from 12 to 20 million: the scene comes as near to it as its

@@ -45,6 +45,8 @@ class Primitives {
   /// positions[i], the last one above all; empty where there is nothing. For pricing splits: not rounded outwards.
   virtual void chop(const Reference& reference, int axis, std::span<const float> positions,
                     std::span<Box> parts) const = 0;
+  /// Pairs of primitives that share an edge, by rank, as mesh::edge_links gives them. By default there are none.
+  virtual AlignedBuffer<mesh::EdgeLink> edge_links(mesh::Weld weld, Executor& executor) const;
 };
 
 /// The primitives of a triangle mesh. Reads the mesh's arrays, which must outlive it. Only usable triangles may be

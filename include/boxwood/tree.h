@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "boxwood/base.h"
@@ -38,6 +39,8 @@ struct BinaryTree {
   AlignedBuffer<std::uint32_t> references;  ///< primitive ids
   std::size_t primitive_count = 0;          ///< ids are below this
   bool splits_references = false;           ///< a primitive may be referenced more than once
+  /// What its builder found worth telling, a name and a number each ("roots after round 1"). Not part of the hash.
+  std::vector<std::pair<std::string, double>> notes = {};
 
   bool empty() const { return nodes.empty(); }
   Box bounds() const { return empty() ? Box{} : nodes[0].bounds; }

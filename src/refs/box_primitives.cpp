@@ -26,6 +26,10 @@ class BoxPrimitives final : public Primitives {
 
 }  // namespace
 
+AlignedBuffer<mesh::EdgeLink> Primitives::edge_links(mesh::Weld, Executor&) const {
+  return {};
+}
+
 std::shared_ptr<const Primitives> box_primitives() {
   return std::make_shared<BoxPrimitives>();
 }

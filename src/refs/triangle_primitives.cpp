@@ -48,6 +48,10 @@ class TrianglePrimitives final : public Primitives {
     for (Box& one : parts) one = intersection(one, box);
   }
 
+  AlignedBuffer<mesh::EdgeLink> edge_links(mesh::Weld weld, Executor& executor) const override {
+    return mesh::edge_links(mesh_, weld, executor);
+  }
+
  private:
   MeshView mesh_;
 };

@@ -10,7 +10,7 @@
 #include "boxwood/parallel.h"
 #include "boxwood/refs.h"
 #include "boxwood/tree.h"
-#include "builders/parts/radix_sort.h"
+#include "parallel/radix_sort.h"
 
 namespace boxwood::builders {
 

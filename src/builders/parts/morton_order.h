@@ -6,7 +6,7 @@
 #include "boxwood/base.h"
 #include "boxwood/parallel.h"
 #include "boxwood/refs.h"
-#include "builders/parts/radix_sort.h"
+#include "parallel/radix_sort.h"
 
 namespace boxwood::builders {
 

@@ -7,7 +7,7 @@
 
 #include "builders/parts/area_scale.h"
 #include "builders/parts/ordered_bits.h"
-#include "builders/parts/radix_sort.h"
+#include "parallel/radix_sort.h"
 
 namespace boxwood::builders {
 namespace {

@@ -3,13 +3,13 @@
 // place for each digit (all chunks' zeros first, in chunk order, then the ones, ...) and moves every item to its
 // place: no two threads share a counter and the order is the stable one. Passes over a digit that all items share are
 // skipped. O(n * bits / kDigitBits), deterministic.
-#include "builders/parts/radix_sort.h"
+#include "parallel/radix_sort.h"
 
 #include <array>
 #include <utility>
 #include <vector>
 
-namespace boxwood::builders {
+namespace boxwood {
 namespace {
 
 constexpr int kDigitBits = 11;
@@ -56,4 +56,4 @@ void radix_sort(AlignedBuffer<KeyedIndex>& items, int bits, Executor& executor) 
   }
 }
 
-}  // namespace boxwood::builders
+}  // namespace boxwood

@@ -1,4 +1,4 @@
-#include "builders/parts/radix_sort.h"
+#include "parallel/radix_sort.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace boxwood::builders {
+namespace boxwood {
 namespace {
 
 std::vector<KeyedIndex> random_items(std::size_t size, std::uint64_t mask, std::uint32_t seed) {
@@ -73,4 +73,4 @@ TEST(RadixSort, does_not_depend_on_the_executor) {
 }
 
 }  // namespace
-}  // namespace boxwood::builders
+}  // namespace boxwood

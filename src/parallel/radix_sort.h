@@ -6,13 +6,13 @@
 #include "boxwood/base.h"
 #include "boxwood/parallel.h"
 
-namespace boxwood::builders {
+namespace boxwood {
 
 /// What is sorted: a key and the index it stands for.
 struct KeyedIndex {
   std::uint64_t key;
   std::uint32_t index;
-  std::uint32_t reserved;  ///< makes it 16 bytes, moved at once
+  std::uint32_t other;  ///< carried along: a second index, or nothing
 };
 static_assert(sizeof(KeyedIndex) == 16);
 
@@ -20,4 +20,4 @@ static_assert(sizeof(KeyedIndex) == 16);
 /// order, so the result does not depend on the number of threads. Takes a second array of the same size for the time.
 void radix_sort(AlignedBuffer<KeyedIndex>& items, int bits, Executor& executor);
 
-}  // namespace boxwood::builders
+}  // namespace boxwood

@@ -1,0 +1,266 @@
+// EBBVH (Houghton and Spoerer 2023, bib key ebbvh): triangles that share an edge merge in rounds, the edge with the
+// largest box first; another builder joins the clusters that are left. Two rows of the registry: `ebbvh` is the paper,
+// all rounds and a spatial median on top; `ebbvh-gated` stops while clusters are still compact and hands over to a
+// surface area heuristic, which is better everywhere. Differs from the paper in what its listing leaves open or gets
+// wrong (vertices are welded, edges sorted by both ends: mesh/edge_links.cpp), in the choice of the builder on top, and
+// in the leaves, decided by the surface area heuristic once the tree is whole (parts/merge_forest.h). O(n log n),
+// deterministic: the rounds have one result (parts/edge_clustering.cpp), and each root is one reference to the top.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string>
+
+#include "builders/builder_list.h"
+#include "builders/parts/build_monitor.h"
+#include "builders/parts/edge_clustering.h"
+#include "builders/parts/merge_forest.h"
+#include "builders/parts/option_specs.h"
+
+namespace boxwood::builders {
+namespace {
+
+constexpr std::array<const char*, 2> kWelds{"position", "index"};
+constexpr std::size_t kMostTops = 64;
+/// Rounds whose roots are noted one by one.
+constexpr std::size_t kNotedRounds = 8;
+
+/// Builders that can join clusters: those that take references as they are, and any number of them.
+struct Tops {
+  std::array<const char*, kMostTops> ids{};
+  std::size_t count = 0;
+
+  explicit Tops(const char* first) {
+    add(first);
+#define BOXWOOD_ADD_TOP(name) add_if_fit(name##_builder, first);
+    BOXWOOD_BUILDER_LIST(BOXWOOD_ADD_TOP)
+#undef BOXWOOD_ADD_TOP
+  }
+  std::span<const char* const> span() const {
+    return {ids.data(), count};
+  }
+
+ private:
+  void add(const char* id) {
+    if (count < kMostTops) ids[count++] = id;
+  }
+  void add_if_fit(const BuilderInfo& info, const char* first) {
+    const std::string_view id = info.id;
+    if (id != first && !id.starts_with("ebbvh") && !info.splits_references && info.largest_sensible == kMostReferences)
+      add(info.id);
+  }
+};
+
+constexpr OptionSpec kWeldOption{
+    .key = "weld",
+    .description = "vertices are the same by position, or by index as the mesh has it (seams then divide clusters)",
+    .choices = kWelds};
+constexpr OptionSpec kPairCutoffOption{
+    .key = "pair_cutoff",
+    .description = "the first round that merges fewer pairs is the last one (Houghton and Spoerer 2023)",
+    .default_value = 1,
+    .lowest = 1,
+    .highest = 1e9,
+    .integer = true};
+constexpr OptionSpec kLeafMaxOption = leaf_max_option(
+    16, "most references in a leaf, made where it is no dearer than its subtree; 1 = one each, 0 = any");
+
+constexpr OptionSpec rounds_option(double rounds) {
+  return {.key = "rounds",
+          .description = "most rounds of merging over shared edges; 0 = until no edge joins two clusters",
+          .default_value = rounds,
+          .lowest = 0,
+          .highest = 1e9,
+          .integer = true};
+}
+constexpr OptionSpec gate_area_option(double factor) {
+  return {.key = "gate.area",
+          .description =
+              "clusters merge only while the joined box's area is at most this many times both areas added; "
+              "0 = always",
+          .default_value = factor,
+          .lowest = 0,
+          .highest = 1e6};
+}
+constexpr OptionSpec gate_size_option(double size) {
+  return {.key = "gate.size",
+          .description = "most references of a cluster; 0 = any number",
+          .default_value = size,
+          .lowest = 0,
+          .highest = double(kMostReferences),
+          .integer = true};
+}
+OptionSpec top_option(const Tops& tops) {
+  return {.key = "top", .description = "builder that joins the clusters that are left", .choices = tops.span()};
+}
+
+// The rows of other files are constants, so their ids are there when these are made, before main.
+const Tops kTops("middle"), kGatedTops("binned-sah");
+const std::array<OptionSpec, 7> kOptions{kWeldOption,         top_option(kTops),   rounds_option(0), kPairCutoffOption,
+                                         gate_area_option(0), gate_size_option(0), kLeafMaxOption};
+const std::array<OptionSpec, 7> kGatedOptions{kWeldOption,       top_option(kGatedTops), rounds_option(1),
+                                              kPairCutoffOption, gate_area_option(1),    gate_size_option(0),
+                                              kLeafMaxOption};
+
+constexpr std::uint32_t kNone = 0xffffffffu;
+
+/// Links between primitives become links between references: the first of each primitive.
+void name_references(AlignedBuffer<ClusterLink>& links, const refs::ReferenceSet& set) {
+  bool same = set.references.size() == set.primitive_count;
+  for (std::size_t i = 0; same && i < set.references.size(); ++i) same = set.references[i].primitive == i;
+  if (same) return;
+  std::vector<std::uint32_t> reference_of(set.primitive_count, kNone);
+  for (std::size_t i = set.references.size(); i-- > 0;) reference_of[set.references[i].primitive] = std::uint32_t(i);
+  std::size_t kept = 0;
+  for (const ClusterLink& link : links) {
+    const ClusterLink named{reference_of[link.a], reference_of[link.b]};
+    if (named.a != kNone && named.b != kNone) links[kept++] = named;
+  }
+  links.truncate(kept);
+}
+
+AlignedBuffer<ClusterLink> links_of(const refs::ReferenceSet& set, mesh::Weld weld, Executor& executor) {
+  auto links = set.primitives->edge_links(weld, executor);
+  name_references(links, set);
+  return links;
+}
+
+refs::ReferenceSet as_references(std::span<const std::uint32_t> roots, const MergeForest& forest) {
+  refs::ReferenceSet set;
+  set.references = AlignedBuffer<refs::Reference>(roots.size());
+  set.primitive_count = roots.size();
+  set.bounds = forest.bounds();
+  set.primitives = refs::box_primitives();
+  for (std::size_t r = 0; r < roots.size(); ++r) {
+    const Box& box = forest.box(roots[r]);
+    set.references[r] = {box.lower, std::uint32_t(r), box.upper, 0};
+  }
+  return set;
+}
+
+/// Merges the roots as a tree over them says, and gives the cluster that holds all.
+std::uint32_t merge_like(const tree::BinaryTree& top, std::vector<std::uint32_t> roots, std::uint32_t merged,
+                         MergeForest& forest) {
+  std::vector<std::uint32_t> cluster(top.nodes.size());
+  for (std::size_t n = top.nodes.size(); n-- > 0;) {  // children stand after their parents
+    const tree::Node& node = top.nodes[n];
+    if (!node.is_leaf()) {
+      cluster[n] = forest.merge(merged++, cluster[node.first], cluster[node.first + 1]);
+      continue;
+    }
+    std::vector<std::uint32_t> open;
+    for (std::uint32_t r = 0; r < node.count; ++r) open.push_back(roots[top.references[node.first + r]]);
+    while (open.size() > 1) {
+      std::size_t made = 0;
+      for (std::size_t i = 0; i < open.size(); i += 2)
+        open[made++] = i + 1 < open.size() ? forest.merge(merged++, open[i], open[i + 1]) : open[i];
+      open.resize(made);
+    }
+    cluster[n] = open[0];
+  }
+  return cluster[0];
+}
+
+/// The top's prices and leaves are those of the build, counted in roots of average size. Its leaves of several roots
+/// only spare it splits: the forest decides on leaves.
+BuildOptions top_options(const OptionValues& options, const char* top, double references_per_root) {
+  const auto text = [](double value) {
+    char buffer[32];
+    return std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
+  };
+  const double intersection = std::min(options.number("cost.intersection") * references_per_root, 1e6);
+  BuildOptions result{.builder = top,
+                      .settings = {{"cost.traversal", text(options.number("cost.traversal"))},
+                                   {"cost.intersection", text(intersection)}}};
+  for (const OptionSpec& spec : find(top)->options) {
+    if (std::string_view(spec.key) != kLeafMax) continue;
+    const double roots = std::floor(options.integer(kLeafMax) / references_per_root);
+    result.settings[kLeafMax] = text(std::clamp(roots, options.integer(kLeafMax) == 0 ? 0.0 : 1.0, spec.highest));
+  }
+  return result;
+}
+
+Result<std::uint32_t> join_roots(const EdgeClustering& clustering, const OptionValues& options, const char* top,
+                                 MergeForest& forest, const BuildContext& context) {
+  std::vector<std::uint32_t> roots = clustering.roots();
+  if (roots.size() == 1) return roots[0];
+  const double references_per_root = double(forest.reference_count()) / double(roots.size());
+  const auto tree = build(as_references(roots, forest), top_options(options, top, references_per_root),
+                          BuildContext{context.executor, {}, context.cancel});
+  if (!tree)
+    return Error{tree.error().code, "option 'top', builder '" + std::string(top) + "': " + tree.error().message};
+  return merge_like(*tree, std::move(roots), clustering.merged(), forest);
+}
+
+void add_notes(const EdgeClustering& clustering, std::uint32_t references, tree::BinaryTree& tree) {
+  const std::vector<std::uint32_t>& pairs = clustering.pairs_by_round();
+  if (!pairs.empty()) tree.notes.emplace_back("pairs of round 1", pairs[0]);
+  std::uint32_t roots = references;
+  for (std::size_t round = 0; round < pairs.size(); ++round) {
+    roots -= pairs[round];
+    if (round < kNotedRounds) tree.notes.emplace_back("roots after round " + std::to_string(round + 1), roots);
+  }
+  tree.notes.emplace_back("rounds", double(pairs.size()));
+  tree.notes.emplace_back("roots", roots);
+}
+
+Result<tree::BinaryTree> build_with_top(refs::ReferenceSet&& set, const OptionValues& options, const char* top,
+                                        const BuildContext& context) {
+  BuildMonitor monitor(context, 4);
+  const auto weld = static_cast<mesh::Weld>(options.choice("weld"));
+  auto links = links_of(set, weld, context.executor);
+  monitor.finish(1);
+  if (monitor.cancelled()) return cancelled_error();
+
+  const auto count = std::uint32_t(set.references.size());
+  MergeForest forest(set.references.span(), {}, options.cost(), options.integer(kLeafMax), context.executor);
+  set.references = {};
+  EdgeClustering clustering(forest, std::move(links), {options.number("gate.area"), options.integer("gate.size")}, {},
+                            context.executor);
+  if (!clustering.run({options.integer("rounds"), options.integer("pair_cutoff")}, monitor)) return cancelled_error();
+  monitor.finish(1);
+
+  const auto root = join_roots(clustering, options, top, forest, context);
+  if (!root) return root.error();
+  monitor.finish(1);
+  auto tree = forest.tree(*root, set.primitive_count, context.executor);
+  add_notes(clustering, count, tree);
+  monitor.finish(1);
+  return tree;
+}
+
+Result<tree::BinaryTree> build_ebbvh(refs::ReferenceSet&& set, const OptionValues& options,
+                                     const BuildContext& context) {
+  return build_with_top(std::move(set), options, kTops.ids[options.choice("top")], context);
+}
+
+Result<tree::BinaryTree> build_ebbvh_gated(refs::ReferenceSet&& set, const OptionValues& options,
+                                           const BuildContext& context) {
+  return build_with_top(std::move(set), options, kGatedTops.ids[options.choice("top")], context);
+}
+
+}  // namespace
+
+constinit const BuilderInfo ebbvh_builder = {
+    .id = "ebbvh",
+    .name = "EBBVH",
+    .summary = "merges triangles over shared edges, bottom-up, as published; best for comparing with the paper",
+    .paper = "ebbvh",
+    .cost_class = "O(n log n)",
+    .splits_references = false,
+    .largest_sensible = kMostReferences,
+    .options = kOptions,
+    .build = build_ebbvh};
+
+constinit const BuilderInfo ebbvh_gated_builder = {
+    .id = "ebbvh-gated",
+    .name = "Gated EBBVH",
+    .summary = "pairs triangles over shared edges below a binned SAH tree; best for meshes of connected triangles",
+    .paper = "ebbvh",
+    .cost_class = "O(n log n)",
+    .splits_references = false,
+    .largest_sensible = kMostReferences,
+    .options = kGatedOptions,
+    .build = build_ebbvh_gated};
+
+}  // namespace boxwood::builders
