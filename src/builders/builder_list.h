@@ -6,7 +6,7 @@
 
 // In the order they are listed to people. A row is the id with '_' for '-'.
 #define BOXWOOD_BUILDER_LIST(row) \
-  row(binned_sah) row(sweep_sah) row(geometric) row(middle) row(equal_counts) row(lbvh) row(hlbvh)
+  row(binned_sah) row(sweep_sah) row(geometric) row(generic) row(middle) row(equal_counts) row(lbvh) row(hlbvh)
 
 namespace boxwood::builders {
 

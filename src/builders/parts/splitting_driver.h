@@ -208,7 +208,17 @@ class SplittingDriver {
       ids.insert(ids.end(), subtrees[i].ids.begin(), subtrees[i].ids.end());
       subtrees[i] = {};
     }
-    return tree::canonicalize(top_, ids, primitive_count, true, executor_);
+    tree::BinaryTree tree = tree::canonicalize(top_, ids, primitive_count, true, executor_);
+    refit(tree);
+    return tree;
+  }
+
+  /// Parts together may need less room than the whole did, so inner boxes are made anew. Children stand after parents.
+  static void refit(tree::BinaryTree& tree) {
+    for (std::size_t i = tree.nodes.size(); i-- > 0;) {
+      tree::Node& node = tree.nodes[i];
+      if (!node.is_leaf()) node.bounds = merge(tree.nodes[node.first].bounds, tree.nodes[node.first + 1].bounds);
+    }
   }
 
   Finder& finder_;
