@@ -39,7 +39,17 @@ class ConfigurationSearch {
 
   ConfigurationSearch(const Box& node, std::uint32_t references, const CandidatePlanes& planes, const Counter& counter,
                       const ConfigurationPrice& price)
-      : node_(node), references_(references), planes_(planes), counter_(counter), price_(price) {}
+      : references_(references), planes_(planes), counter_(counter), price_(price) {
+    Box thinnest{{0, 0, 0}, {0, 0, 0}};
+    for (int axis = 0; axis < 3; ++axis) {
+      const float whole = node.upper[axis] - node.lower[axis];
+      float& thin = thinnest.upper[axis] = planes.flat_boxes ? 0 : whole;
+      for (std::size_t i = 1; i < planes.lower[axis].size() && !planes.flat_boxes; ++i)
+        thin = std::min(thin, planes.lower[axis][i] - planes.lower[axis][i - 1]);
+      thin_[axis] = whole > 0 ? static_cast<double>(thin) / static_cast<double>(whole) : 1;
+    }
+    least_area_ = scaled_half_area(thinnest, price.area_scale);
+  }
 
   /// The cheapest configuration of each pattern, in order; cost infinity where none is below `limit`.
   std::array<PricedConfiguration, kPatterns> run(double limit, Executor& executor) const {
@@ -54,8 +64,29 @@ class ConfigurationSearch {
   struct State {
     PlaneBox left, right;
     double limit;
+    double share[2] = {};  ///< of the node's extent that both children have: on the first axis, the first two
     PricedConfiguration best;
   };
+
+  /// Does one child have both of the node's sides, so that the other is inside it on the axis?
+  static bool is_nested(int owner) { return owner == 0 || owner == 3; }
+
+  double axis_share(const State& state, int axis) const {
+    const auto at = [&](const std::vector<float>& planes, std::int32_t i) {
+      return static_cast<double>(planes[static_cast<std::size_t>(i)]);
+    };
+    const double shared = at(planes_.upper[axis], std::min(state.left.upper[axis], state.right.upper[axis])) -
+                          at(planes_.lower[axis], std::max(state.left.lower[axis], state.right.lower[axis]));
+    const double whole =
+        at(planes_.upper[axis], static_cast<std::int32_t>(planes_.upper[axis].size()) - 1) - at(planes_.lower[axis], 0);
+    return whole > 0 ? std::max(shared, 0.0) / whole : shared < 0 ? 0 : 1;
+  }
+
+  /// True when no children that share at least this part of the node can be the best, however small they are.
+  bool costs_too_much(const State& state, double least_share) const {
+    return price_.overlap > 0 &&
+           !((1 + price_.overlap * least_share) * least_area_ * references_ < std::min(state.limit, state.best.cost));
+  }
 
   void widen(State& state, int axis) const {
     const auto last = static_cast<std::int32_t>(planes_.upper[axis].size()) - 1;
@@ -72,8 +103,13 @@ class ConfigurationSearch {
     const auto covered = [&] { return counter_.count(state.left, state.right, price_.may_split).covered; };
     for_pairs(state, 0, owner[0], [&] {
       if (!covered()) return false;
+      state.share[0] = axis_share(state, 0);
+      if (is_nested(owner[1]) && is_nested(owner[2]) && costs_too_much(state, state.share[0] * thin_[1] * thin_[2]))
+        return true;
       for_pairs(state, 1, owner[1], [&] {
         if (!covered()) return false;
+        state.share[1] = state.share[0] * axis_share(state, 1);
+        if (is_nested(owner[2]) && costs_too_much(state, state.share[1] * thin_[2])) return true;
         for_pairs(state, 2, owner[2], [&] { return consider(state); });
         return true;
       });
@@ -124,7 +160,7 @@ class ConfigurationSearch {
     const Box left = box_of(state.left), right = box_of(state.right);
     const double left_area = scaled_half_area(left, price_.area_scale);
     const double right_area = scaled_half_area(right, price_.area_scale);
-    const double penalty = price_.penalty(left, right, node_);
+    const double penalty = price_.overlap > 0 ? 1 + price_.overlap * state.share[1] * axis_share(state, 2) : 1;
     const double enough = std::min(state.limit, state.best.cost);
     if (!(penalty * std::min(left_area, right_area) * references_ < enough)) return true;
     const SideCounts counts = counter_.count(state.left, state.right, price_.may_split);
@@ -138,11 +174,12 @@ class ConfigurationSearch {
     return true;
   }
 
-  const Box& node_;
   std::uint32_t references_;
   const CandidatePlanes& planes_;
   const Counter& counter_;
   const ConfigurationPrice& price_;
+  double thin_[3];     ///< the least share of the node's extent that a child can have
+  double least_area_;  ///< of a child
 };
 
 }  // namespace boxwood::builders

@@ -41,7 +41,7 @@ constexpr OptionSpec kOptions[] = {
      .highest = 1e30},
     grid_factor_option(),
     grid_rule_option(),
-    growth_option(8),
+    growth_option(2),
     leaf_max_option(16, "most references in a leaf; 0: no limit but the cost"),
 };
 
