@@ -198,8 +198,28 @@ void SweepFinder::apply(const SweepSplit& split, const BuildRange& range, Execut
     mark(0, 0, range.size());
   for (int axis = 0; axis < 3; ++axis)
     if (axis != split.axis) partition(range, split.mid, axis, executor);
+  measure_children(split.axis, left, right, executor);
+}
+
+void SweepFinder::apply(FunctionRef<bool(const refs::Reference&)> goes_left, const BuildRange& range,
+                        Executor& executor, BuildRange& left, BuildRange& right) {
+  const std::uint32_t* const order = order_[0].data() + range.first;
+  std::vector<std::uint32_t> counts(chunk_count(range.size()));
+  executor.for_chunks(range.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) counts[chunk] += is_left_[order[i]] = goes_left(references_[order[i]]);
+  });
+  std::uint32_t mid = range.first;
+  for (const std::uint32_t count : counts) mid += count;
+  left.first = range.first;
+  left.last = right.first = mid;
+  right.last = range.last;
+  for (int axis = 0; axis < 3; ++axis) partition(range, mid, axis, executor);
+  measure_children(0, left, right, executor);
+}
+
+void SweepFinder::measure_children(int axis, BuildRange& left, BuildRange& right, Executor& executor) const {
   for (BuildRange* child : {&left, &right}) {
-    child->bounds = measure_in_chunks(split.axis, child->first, child->last, executor);
+    child->bounds = measure_in_chunks(axis, child->first, child->last, executor);
     measure_centroids(*child);
   }
 }

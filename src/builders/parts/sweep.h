@@ -28,6 +28,15 @@ class SweepFinder {
   void apply(const SweepSplit& split, const BuildRange& range, Executor& executor, BuildRange& left, BuildRange& right);
   void write_leaf(const BuildRange& range, std::uint32_t* ids) const;
 
+  /// The cheapest split between two neighbours, whatever a leaf costs. Is none when a range has no area.
+  SweepSplit sweep(const BuildRange& range, Executor& executor);
+  /// Parts the range by another rule: those `goes_left` says yes to stand before the others, in each order.
+  void apply(FunctionRef<bool(const refs::Reference&)> goes_left, const BuildRange& range, Executor& executor,
+             BuildRange& left, BuildRange& right);
+  /// Of a place in one axis's order.
+  const refs::Reference& reference(int axis, std::size_t i) const { return references_[order_[axis][i]]; }
+  float scale() const { return area_scale_; }
+
  private:
   /// The best split of each axis, found so far.
   struct Best {
@@ -42,12 +51,11 @@ class SweepFinder {
     Best best;
   };
 
-  const refs::Reference& reference(int axis, std::size_t i) const { return references_[order_[axis][i]]; }
   Box4 measure(int axis, std::size_t begin, std::size_t end) const;
   Box4 measure_in_chunks(int axis, std::size_t begin, std::size_t end, Executor& executor) const;
   Best sweep_chunk(const BuildRange& range, std::size_t begin, std::size_t end, const Part& part);
   Best sweep_in_chunks(const BuildRange& range, Executor& executor);
-  SweepSplit sweep(const BuildRange& range, Executor& executor);
+  void measure_children(int axis, BuildRange& left, BuildRange& right, Executor& executor) const;
   void partition(const BuildRange& range, std::uint32_t mid, int axis, Executor& executor);
   void measure_centroids(BuildRange& range) const;
 
