@@ -2,8 +2,9 @@
 """Keeps the documentation true to the registry of builders.
 
 check_docs.py --program BOXWOOD [--root FOLDER] [--write]
-Checks that every builder has a page docs/builders/<id>.md and every page a builder, that docs/presplits.md names every
-pre-split, that every paper key stands in docs/references.bib, that every relative link leads somewhere, and that each table between the lines
+Checks that every builder has a page docs/builders/<id>.md and every page a builder, that docs/presplits.md names
+every pre-split, that every paper key stands in docs/references.bib, that every relative link leads somewhere, and that
+each table between the lines
     <!-- builders:begin -->   and   <!-- builders:end -->
 is what the program tells; with --write those tables are renewed. One line per fault; exit status 1 when there is any.
 check_docs.py --self-test plants faults in a scratch tree and checks that each is found.
