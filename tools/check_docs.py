@@ -2,8 +2,9 @@
 """Keeps the documentation true to the registry of builders.
 
 check_docs.py --program BOXWOOD [--root FOLDER] [--write]
-Checks that every builder has a page docs/builders/<id>.md and every page a builder, that every paper key stands in
-docs/references.bib, that every relative link leads somewhere, and that each table between the lines
+Checks that every builder has a page docs/builders/<id>.md and every page a builder, that docs/presplits.md names
+every pre-split, that every paper key stands in docs/references.bib, that every relative link leads somewhere, and that
+each table between the lines
     <!-- builders:begin -->   and   <!-- builders:end -->
 is what the program tells; with --write those tables are renewed. One line per fault; exit status 1 when there is any.
 check_docs.py --self-test plants faults in a scratch tree and checks that each is found.
@@ -22,9 +23,9 @@ LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)|!\[[^\]]*\]\(([^)\s]+)\)")
 KEY = re.compile(r"^\s*@\w+\s*\{\s*([^,\s]+)", re.MULTILINE)
 
 
-def ask_builders(program):
-    """The registry as the program tells it."""
-    answer = subprocess.run([program, "builders", "--json", "-", "--quiet"], check=True, capture_output=True, text=True)
+def ask(program, registry):
+    """A registry ("builders", "presplits") as the program tells it."""
+    answer = subprocess.run([program, registry, "--json", "-", "--quiet"], check=True, capture_output=True, text=True)
     return json.loads(answer.stdout)
 
 
@@ -68,13 +69,21 @@ def check_builder_pages(root, builders):
         yield f"docs/builders/{stray}.md: there is no such builder"
 
 
-def check_papers(root, builders):
+def check_presplits(root, presplits):
+    path = root / "docs/presplits.md"
+    text = path.read_text(encoding="utf-8") if path.is_file() else ""
+    for presplit in presplits:
+        if f"`{presplit['id']}`" not in text:
+            yield f"docs/presplits.md: does not name the pre-split {presplit['id']}"
+
+
+def check_papers(root, rows):
     path = root / "docs/references.bib"
     keys = set(KEY.findall(path.read_text(encoding="utf-8"))) if path.is_file() else set()
-    for builder in builders:
-        for key in re.split(r"[\s,;]+", builder["paper"].strip()):
+    for row in rows:
+        for key in re.split(r"[\s,;]+", row["paper"].strip()):
             if key and key not in keys:
-                yield f"docs/references.bib: has no entry '{key}', which the builder {builder['id']} names"
+                yield f"docs/references.bib: has no entry '{key}', which {row['id']} names"
 
 
 def check_links(root):
@@ -85,19 +94,22 @@ def check_links(root):
                 yield f"{path.relative_to(root)}: the link to {target} leads nowhere"
 
 
-def check_tree(root, builders, write=False):
+def check_tree(root, builders, presplits=(), write=False):
     faults = list(check_tables(root, builders, write))
     faults += check_builder_pages(root, builders)
-    faults += check_papers(root, builders)
+    faults += check_presplits(root, presplits)
+    faults += check_papers(root, [*builders, *presplits])
     faults += check_links(root)
     return faults
 
 
 def self_test():
     row = {"id": "middle", "name": "Middle", "summary": "Halves boxes.", "cost_class": "O(n)", "paper": "doe1990"}
+    presplits = [{"id": "halve", "paper": "doe1990"}]
     clean = {
         "README.md": "# x\n<!-- builders:begin -->\n<!-- builders:end -->\nSee [it](docs/builders/middle.md#top).\n",
         "docs/builders/middle.md": "# middle\n[web](https://example.org) [up](../../README.md)\n",
+        "docs/presplits.md": "# `halve`\n",
         "docs/references.bib": "@article{doe1990,\n title={x}}\n",
     }
     cases = [
@@ -107,6 +119,7 @@ def self_test():
         ({"docs/builders/novel.md": "# novel\n"}, "no such builder"),
         ({"docs/builders/middle.md": None}, "every builder has a page"),
         ({"docs/references.bib": "@book{other,}\n"}, "no entry 'doe1990'"),
+        ({"docs/presplits.md": "# `none`\n"}, "does not name the pre-split halve"),
     ]
     failures = 0
     for change, words in cases:
@@ -116,9 +129,9 @@ def self_test():
                 if content is not None:
                     (root / name).parent.mkdir(parents=True, exist_ok=True)
                     (root / name).write_text(content, encoding="utf-8")
-            stale = check_tree(root, [row])
-            check_tree(root, [row], write=True)
-            faults = check_tree(root, [row])
+            stale = check_tree(root, [row], presplits)
+            check_tree(root, [row], presplits, write=True)
+            faults = check_tree(root, [row], presplits)
         is_right = not faults if words is None else any(words in fault for fault in faults)
         if words is None:
             is_right = is_right and any("is not what the program tells" in fault for fault in stale)
@@ -140,7 +153,8 @@ def main():
         return 1 if self_test() else 0
     if not arguments.program:
         parser.error("--program is needed")
-    faults = check_tree(arguments.root, ask_builders(arguments.program), arguments.write)
+    builders, presplits = ask(arguments.program, "builders"), ask(arguments.program, "presplits")
+    faults = check_tree(arguments.root, builders, presplits, arguments.write)
     for fault in faults:
         print(fault)
     print(f"{len(faults)} faults in the documentation" if faults else "The documentation agrees with the program.")

@@ -8,9 +8,11 @@
 namespace boxwood::program {
 namespace {
 
-/// A builder with its layouts, or a rival with its modes: what is built in one go, then traced by several contestants.
+/// A builder behind a pre-split with its layouts, or a rival with its modes: what is built in one go, then traced by
+/// several contestants.
 struct Own {
   const builders::BuildOptions* options;
+  const refs::Presplit* presplit;
   std::vector<std::shared_ptr<BuildFigures>> figures;  // per layout
   std::vector<std::shared_ptr<const Accel>> accels;    // per layout
 };
@@ -42,10 +44,12 @@ void describe(BuildFigures& figures, const tree::BinaryTree& tree, const Accel& 
 Status build_own(Own& own, const BenchPlan& plan, const Input& input, std::size_t thread_index,
                  BenchExecutors& executors, const Session& session) {
   executors.choose(thread_index);
-  const auto built = build_tree(input.mesh, plan.presplit, *own.options, *executors.chosen);
+  const auto built = build_tree(input.mesh, *own.presplit, *own.options, *executors.chosen);
   if (!built) return built.error();
   const bool is_first = own.accels.empty();
-  if (is_first) warn_excluded(input, own.options == &plan.builders[0] ? built->excluded : 0, session);
+  if (is_first)
+    warn_excluded(input, own.options == &plan.builders[0] && own.presplit == &plan.presplits[0] ? built->excluded : 0,
+                  session);
   const auto resolved = builders::resolve_options(own.options->builder, own.options->settings);
   if (!resolved) return resolved.error();
   for (std::size_t i = 0; i < plan.layouts.size(); ++i) {
@@ -81,10 +85,11 @@ std::vector<Contestant> list_contestants(const BenchPlan& plan, const std::vecto
   for (const Own& o : own)
     for (std::size_t i = 0; i < plan.layouts.size(); ++i)
       for (const queries::Mode mode : plan.modes)
-        contestants.push_back({o.options->builder, plan.layouts[i], mode, o.figures[i], o.accels[i], nullptr});
+        contestants.push_back(
+            {o.options->builder, o.presplit->text(), plan.layouts[i], mode, o.figures[i], o.accels[i], nullptr});
   for (const Rival& r : rivals)
     contestants.push_back(
-        {std::string("embree:") + rivals::name(r.quality), "embree", r.mode, r.figures, nullptr, r.embree});
+        {std::string("embree:") + rivals::name(r.quality), "", "embree", r.mode, r.figures, nullptr, r.embree});
   return contestants;
 }
 
@@ -101,8 +106,10 @@ Result<std::vector<Contestant>> build_contestants(const BenchPlan& plan, const I
                                                   const Session& session, Progress& progress) {
   std::vector<Own> own;
   for (const auto& options : plan.builders) {
-    own.push_back({&options, {}, {}});
-    for (std::size_t i = 0; i < plan.layouts.size(); ++i) own.back().figures.push_back(make_figures(plan));
+    for (const auto& presplit : plan.presplits) {
+      own.push_back({&options, &presplit, {}, {}});
+      for (std::size_t i = 0; i < plan.layouts.size(); ++i) own.back().figures.push_back(make_figures(plan));
+    }
   }
   std::vector<Rival> rivals;
   for (const RivalChoice& choice : plan.rivals)

@@ -28,15 +28,18 @@ bool differs_only_in_mode(const Contestant& a, const Contestant& b) {
 
 /// The columns that tell contestants apart, leaving out what is the same for all.
 struct Names {
-  bool layout, mode;
-  explicit Names(const BenchPlan& plan) : layout(plan.layouts.size() > 1), mode(plan.modes.size() > 1) {}
+  bool presplit, layout, mode;
+  explicit Names(const BenchPlan& plan)
+      : presplit(plan.presplits.size() > 1), layout(plan.layouts.size() > 1), mode(plan.modes.size() > 1) {}
   void columns(Table& table) const {
     table.column("builder", Align::left);
+    if (presplit) table.column("pre-split", Align::left);
     if (layout) table.column("layout", Align::left);
     if (mode) table.column("mode", Align::left);
   }
   std::vector<std::string> cells(const Contestant& c) const {
     std::vector<std::string> cells{c.builder};
+    if (presplit) cells.push_back(c.is_rival() ? "-" : c.presplit);
     if (layout) cells.push_back(c.is_rival() ? "-" : c.layout);
     if (mode) cells.push_back(queries::name(c.mode));
     return cells;
@@ -45,7 +48,9 @@ struct Names {
 
 std::string build_table(const BenchPlan& plan, const BenchResult& result) {
   Table table;
+  const bool has_presplits = plan.presplits.size() > 1;
   table.column("builder", Align::left);
+  if (has_presplits) table.column("pre-split", Align::left);
   table.column("layout", Align::left);
   for (const int threads : plan.thread_counts) {
     table.column("ms", Align::right, "build, " + thread_word(threads));
@@ -56,7 +61,9 @@ std::string build_table(const BenchPlan& plan, const BenchResult& result) {
     const Contestant& c = result.contestants[i];
     if (i > 0 && differs_only_in_mode(c, result.contestants[i - 1])) continue;
     // A rival is built anew for each mode.
-    std::vector<std::string> cells{c.builder, c.is_rival() ? queries::name(c.mode) : c.layout};
+    std::vector<std::string> cells{c.builder};
+    if (has_presplits) cells.push_back(c.is_rival() ? "-" : c.presplit);
+    cells.push_back(c.is_rival() ? queries::name(c.mode) : c.layout);
     for (std::size_t t = 0; t < plan.thread_counts.size(); ++t) {
       const double ms = median_build(c, t);
       cells.push_back(fmt::format("{:.1f}", ms));
@@ -176,6 +183,7 @@ Json rows_json(const BenchPlan& plan, const BenchResult& result) {
     json["input"] = result.input->text;
     json["triangles"] = result.input->mesh.triangles.size();
     json["builder"] = c.builder;
+    json["presplit"] = c.is_rival() ? Json() : Json(c.presplit);
     json["layout"] = c.layout;
     json["mode"] = queries::name(c.mode);
     json["rays"] = name(row.kind);

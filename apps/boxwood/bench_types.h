@@ -35,7 +35,7 @@ struct RivalChoice {
 /// The checked options of one run.
 struct BenchPlan {
   std::vector<builders::BuildOptions> builders;
-  refs::Presplit presplit;  ///< before every builder
+  std::vector<refs::Presplit> presplits;  ///< each before every builder
   std::vector<std::string> layouts;
   std::vector<queries::Mode> modes;
   std::vector<RayKind> kinds;
@@ -79,7 +79,7 @@ struct BuildFigures {
 
 /// One thing that traces: ours (accel) or a rival's (embree).
 struct Contestant {
-  std::string builder, layout;
+  std::string builder, presplit, layout;
   queries::Mode mode = queries::Mode::robust;
   std::shared_ptr<BuildFigures> build;
   std::shared_ptr<const Accel> accel;

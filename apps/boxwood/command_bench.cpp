@@ -21,7 +21,8 @@ struct Options {
   std::vector<std::string> inputs;
   std::vector<std::string> builders{"all"}, layouts{AccelOptions{}.layout}, modes{"robust"}, rivals, settings;
   std::vector<std::string> kinds{"primary", "random", "diffuse", "occlusion"};
-  std::string camera, size = "1024x1024", table = "full", csv, presplit = AccelOptions{}.presplit;
+  std::string camera, size = "1024x1024", table = "full", csv;
+  std::vector<std::string> presplits;
   int repeat = 3;
   std::uint64_t random_rays = 0, seed = 1;
 };
@@ -81,6 +82,16 @@ Status add_layouts_and_modes(const Options& options, BenchPlan& plan) {
   return {};
 }
 
+Status add_presplits(const Options& options, BenchPlan& plan) {
+  for (const std::string& text : options.presplits) {
+    const auto presplit = refs::parse_presplit(text);
+    if (!presplit) return presplit.error();
+    plan.presplits.push_back(*presplit);
+  }
+  if (plan.presplits.empty()) plan.presplits.emplace_back();
+  return {};
+}
+
 Status add_kinds(const Options& options, BenchPlan& plan) {
   for (const std::string& word : options.kinds) {
     const auto* kind = std::find_if(std::begin(kKinds), std::end(kKinds), [&](RayKind k) { return word == name(k); });
@@ -126,15 +137,13 @@ void drop_repeats(std::vector<T>& values, Same same) {
 
 Result<BenchPlan> make_plan(const Options& options, const Session& session) {
   BenchPlan plan;
-  for (const auto add : {add_builders, add_layouts_and_modes, add_kinds, add_rivals})
+  for (const auto add : {add_builders, add_presplits, add_layouts_and_modes, add_kinds, add_rivals})
     if (Status status = add(options, plan); !status) return status.error();
+  drop_repeats(plan.presplits, [](const refs::Presplit& a, const refs::Presplit& b) { return a.text() == b.text(); });
   drop_repeats(plan.layouts, std::equal_to<>());
   drop_repeats(plan.modes, std::equal_to<>());
   drop_repeats(plan.kinds, std::equal_to<>());
   drop_repeats(plan.rivals, [](const RivalChoice& a, const RivalChoice& b) { return a.quality == b.quality; });
-  const auto presplit = refs::parse_presplit(options.presplit);
-  if (!presplit) return presplit.error();
-  plan.presplit = *presplit;
   const auto size = parse_size(options.size);
   if (!size) return size.error();
   std::tie(plan.width, plan.height) = *size;
@@ -197,7 +206,8 @@ Json plan_json(const BenchPlan& plan) {
   for (const auto& build : plan.builders)
     if (const auto resolved = builders::resolve_options(build.builder, build.settings))
       json["builders"][build.builder] = options_json(resolved->echo());
-  json["presplit"] = plan.presplit.text();
+  json["presplits"] = Json::array();
+  for (const refs::Presplit& presplit : plan.presplits) json["presplits"].push_back(presplit.text());
   json["layouts"] = plan.layouts;
   json["modes"] = Json::array();
   for (const auto mode : plan.modes) json["modes"].push_back(queries::name(mode));
@@ -227,7 +237,8 @@ void note_plan(const BenchPlan& plan, const std::string& isa, const Session& ses
   for (const auto& build : plan.builders)
     if (const auto resolved = builders::resolve_options(build.builder, build.settings))
       session.note("  {}: {}\n", build.builder, options_line(resolved->echo()));
-  if (!plan.presplit.is_none()) session.note("  pre-split before each: {}\n", plan.presplit.text());
+  if (plan.presplits.size() == 1 && !plan.presplits[0].is_none())
+    session.note("  pre-split before each: {}\n", plan.presplits[0].text());
   if (!plan.rivals.empty())
     session.note("  rival: {}, rtcIntersect1 and rtcOccluded1 in a loop; fast = default scene flags, robust = ROBUST\n",
                  plan.rival_version);
@@ -307,7 +318,7 @@ void add_bench_command(CLI::App& program, Run& run) {
   options->input_options.add_to(command);
   add_list(command, "-b,--builders", options->builders, "Builder ids, or all (the default)");
   add_settings_option(command, options->settings);
-  add_presplit_option(command, options->presplit);
+  add_presplit_option(command, options->presplits);
   add_list(command, "-l,--layouts", options->layouts, "linear, wide4, wide8 (the default), or all");
   add_list(command, "--modes", options->modes, "robust (the default), fast");
   add_list(command, "--rays", options->kinds, "primary, random, diffuse, occlusion (all by default)");

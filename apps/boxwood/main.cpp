@@ -25,7 +25,8 @@ Examples:
   boxwood render scene:city -o city.png --size 1280x720 --shade ao
   boxwood trace bunny.ply --rays rays.npy -o hits.npy --json -
 
-INPUT is a mesh file (PLY, OBJ, STL, glTF, ...) or a procedural scene, scene:NAME[,triangles=N][,seed=S][,rotate=X:Y:Z]....
+INPUT is a mesh file (PLY, OBJ, STL, glTF, ...) or a procedural scene,
+scene:NAME[,triangles=N][,seed=S][,rotate=X:Y:Z]...
 The environment variable BOXWOOD_ISA forces an instruction set: avx512, avx2, sse4 or scalar.
 )";
 

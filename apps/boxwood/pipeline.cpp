@@ -4,6 +4,19 @@
 #include "text.h"
 
 namespace boxwood::program {
+namespace {
+
+constexpr const char* kPresplitHelp =
+    "Split references before building: none, evh:t=14, esc:k=1000, ... (boxwood presplits lists them)";
+
+void check_presplit(CLI::Option* option) {
+  option->type_name("ID[:KEY=VALUE,...]")->check([](const std::string& text) {
+    const auto parsed = refs::parse_presplit(text);
+    return parsed ? std::string() : parsed.error().message;
+  });
+}
+
+}  // namespace
 
 void add_settings_option(CLI::App& command, std::vector<std::string>& settings) {
   command.add_option("--set", settings, "Option of the builder, key=value; repeatable (boxwood builders lists them)")
@@ -16,15 +29,12 @@ void add_settings_option(CLI::App& command, std::vector<std::string>& settings) 
 }
 
 void add_presplit_option(CLI::App& command, std::string& presplit) {
-  command
-      .add_option("--presplit", presplit,
-                  "Split references before building: none, evh:t=14, esc:k=1000, ... (boxwood presplits lists them)")
-      ->type_name("ID[:KEY=VALUE,...]")
-      ->capture_default_str()
-      ->check([](const std::string& text) {
-        const auto parsed = refs::parse_presplit(text);
-        return parsed ? std::string() : parsed.error().message;
-      });
+  check_presplit(command.add_option("--presplit", presplit, kPresplitHelp)->capture_default_str());
+}
+
+void add_presplit_option(CLI::App& command, std::vector<std::string>& presplits) {
+  check_presplit(command.add_option("--presplit", presplits, std::string(kPresplitHelp) + "; repeatable")
+                     ->allow_extra_args(false));
 }
 
 void PipelineOptions::add_to(CLI::App& command) {

@@ -25,6 +25,8 @@ struct PipelineOptions {
 
 /// --presplit; refuses what can't be read as wrong usage, before anything runs.
 void add_presplit_option(CLI::App& command, std::string& presplit);
+/// The same for several, one each time it is given.
+void add_presplit_option(CLI::App& command, std::vector<std::string>& presplits);
 
 /// Makes --set take one key=value each time it is given.
 void add_settings_option(CLI::App& command, std::vector<std::string>& settings);

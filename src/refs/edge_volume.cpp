@@ -18,7 +18,6 @@ namespace boxwood::refs {
 namespace {
 
 constexpr std::string_view kAutomatic = "evh:auto";
-constexpr std::string_view kLocal = "evh:local";
 constexpr double kSteps = 16;  // per unit of t, for `auto`
 
 /// The box of a part of a triangle whose box is `whole`, with room for what rounding moved its corners.
@@ -66,7 +65,7 @@ double fitting_t(const ReferenceSet& set, const MeshView& mesh, const Presplit& 
   int fits = 0, too_many = static_cast<int>(kSteps * presplit.value("t.most")) + 1;
   while (too_many - fits > 1) {
     const int middle = (fits + too_many) / 2;
-    const EdgeSplitter splitter{mesh, {edge_threshold(set.bounds, middle / kSteps), {}}};
+    const EdgeSplitter splitter{mesh, {volume_threshold(set.bounds, middle / kSteps)}};
     (sum_of(count_parts(set, splitter, executor, limit)) > limit ? too_many : fits) = middle;
   }
   return fits / kSteps;
@@ -87,7 +86,7 @@ constexpr PresplitOption kAutomaticOptions[] = {
 
 }  // namespace
 
-double edge_threshold(const Box& scene, double t) {
+double volume_threshold(const Box& scene, double t) {
   const double volume = scene.is_empty() ? 0 : box_volume(scene);
   // A flat scene has no volume to take a share of: nothing is cut, whatever rounding leaves of its edges' volumes.
   return volume > 0 ? volume * std::exp2(-t) : double(kInfinity);
@@ -96,11 +95,9 @@ double edge_threshold(const Box& scene, double t) {
 EdgeRule make_edge_rule(const ReferenceSet& set, const MeshView& mesh, const Presplit& presplit, Executor& executor,
                         PresplitReport& report) {
   report.t = presplit.info->id == kAutomatic ? fitting_t(set, mesh, presplit, executor) : presplit.value("t");
-  const double threshold = edge_threshold(set.bounds, report.t);
+  const double threshold = volume_threshold(set.bounds, report.t);
   report.threshold = std::isfinite(threshold) ? threshold : 0;
-  EdgeRule rule{threshold, {}};
-  if (presplit.info->id == kLocal) rule.crowding = std::make_shared<const Crowding>(set, executor);
-  return rule;
+  return {threshold};
 }
 
 constinit const PresplitInfo edge_volume_presplit = {
@@ -117,15 +114,6 @@ constinit const PresplitInfo automatic_edge_volume_presplit = {
     .summary = "the same with the largest t that stays within a budget of references",
     .paper = "evh",
     .options = kAutomaticOptions,
-    .subdivides = true,
-    .apply = &split_by_edge_volume,
-};
-
-constinit const PresplitInfo local_edge_volume_presplit = {
-    .id = kLocal.data(),
-    .summary = "the same with volume counting for more where the scene is crowded, for less where it is empty",
-    .paper = "evh",
-    .options = kOptions,
     .subdivides = true,
     .apply = &split_by_edge_volume,
 };

@@ -4,7 +4,6 @@
 #include <array>
 
 #include "boxwood/refs.h"
-#include "refs/crowding.h"
 
 namespace boxwood::refs {
 
@@ -30,14 +29,11 @@ struct EdgeRule {
   static constexpr std::size_t kNone = 3;
 
   double threshold = 0;  ///< edges whose box has a larger volume are cut
-  /// Counts volume where it is crowded for more, elsewhere for less; null: everywhere alike.
-  std::shared_ptr<const Crowding> crowding = {};
 
   /// Volume of the edge's box; 0 where the edge is not to be cut: it is small enough, or its midpoint is one of its
   /// ends for want of digits.
   double excess(Vec3 a, Vec3 b) const {
-    double volume = std::fabs((double(b.x) - a.x) * (double(b.y) - a.y) * (double(b.z) - a.z));
-    if (crowding && volume * Crowding::kMost > threshold) volume *= crowding->around({minimum(a, b), maximum(a, b)});
+    const double volume = std::fabs((double(b.x) - a.x) * (double(b.y) - a.y) * (double(b.z) - a.z));
     if (!(volume > threshold)) return 0;
     const Vec3 m = midpoint(a, b);
     return m == a || m == b ? 0 : volume;
@@ -86,8 +82,8 @@ void cut_by_edges(const Triangle& triangle, const EdgeRule& rule, Sink& sink) {
   }
 }
 
-/// Log2 of scene volume over threshold, to threshold. 0 for scenes without a volume: nothing can be cut there.
-double edge_threshold(const Box& scene, double t);
+/// The scene's volume over 2^t; infinite for a scene without a volume, where nothing can be cut.
+double volume_threshold(const Box& scene, double t);
 
 /// The rule of a pre-split that subdivides, over all references of the set.
 EdgeRule make_edge_rule(const ReferenceSet& set, const MeshView& mesh, const Presplit& presplit, Executor& executor,

@@ -95,7 +95,7 @@ const PresplitInfo* find(std::string_view id) {
 
 std::span<const PresplitInfo> presplits() {
   static const PresplitInfo rows[] = {kNone, edge_volume_presplit, automatic_edge_volume_presplit,
-                                      local_edge_volume_presplit, early_split_clipping_presplit};
+                                      volume_clipping_presplit, early_split_clipping_presplit};
   return rows;
 }
 

@@ -5,7 +5,7 @@
 
 namespace boxwood::refs {
 
-extern const PresplitInfo edge_volume_presplit, automatic_edge_volume_presplit, local_edge_volume_presplit,
+extern const PresplitInfo edge_volume_presplit, automatic_edge_volume_presplit, volume_clipping_presplit,
     early_split_clipping_presplit;
 
 }  // namespace boxwood::refs

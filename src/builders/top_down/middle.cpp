@@ -3,8 +3,8 @@
 // Where all centroids fall on one side (rounding) the median takes over, as in pbrt. Ours differs for coinciding
 // centroids: pbrt makes one leaf of any size, we halve such ranges by index down to `leaf.max` (0 gives pbrt's leaf).
 // `fallback=none` is the split of many tutorials instead: it cuts the node's box, not the centroids' box, and where one
-// side stays empty it gives up and makes a leaf of any size. It is here to show what that costs: one floor as wide as the
-// scene keeps its node's box that wide, and all that lies on its side of the middle becomes one leaf.
+// side stays empty it gives up and makes a leaf of any size. It is here to show what that costs: one floor as wide as
+// the scene keeps its node's box that wide, and all that lies on its side of the middle becomes one leaf.
 // O(n log n) on ordinary meshes, at most 96 levels before medians take over; parallel; the same bits for every number
 // of threads.
 #include "builders/builder_list.h"

@@ -17,7 +17,7 @@ std::vector<TriangleMesh> small_scenes() {
   return meshes;
 }
 
-constexpr const char* kPresplits[] = {"evh:t=9", "evh:auto,budget=1.5", "esc:k=100"};
+constexpr const char* kPresplits[] = {"evh:t=9", "evh:auto,budget=1.5", "evh:clip,t=10", "esc:k=100"};
 
 class PresplitMatrix : public ::testing::TestWithParam<std::size_t> {
  protected:

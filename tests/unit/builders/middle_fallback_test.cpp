@@ -1,4 +1,4 @@
-// What a spatial median without a fall-back makes of triangles as wide as the scene, and that the fall-back prevents it.
+// What a spatial median without a fall-back makes of triangles as wide as the scene, and that the fall-back helps.
 #include <gtest/gtest.h>
 
 #include "boxwood/builders.h"

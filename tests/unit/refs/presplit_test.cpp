@@ -202,7 +202,7 @@ TEST(Presplit, EveryPointOfATriangleStaysInABox) {
       turned(test::grid(6), {30, 40, 20}),
   };
   for (std::size_t m = 0; m < std::size(meshes); ++m)
-    for (const char* text : {"evh:t=8", "evh:t=14", "evh:auto,budget=3", "esc:k=30", "esc:k=1000"}) {
+    for (const char* text : {"evh:t=8", "evh:t=14", "evh:auto,budget=3", "evh:clip,t=12", "esc:k=30", "esc:k=1000"}) {
       SCOPED_TRACE(std::string(text) + " on mesh " + std::to_string(m));
       const Split result = split(meshes[m], text);
       expect_covered(meshes[m], result);
@@ -245,7 +245,7 @@ TEST(EdgeVolume, ANeedleIsCutToAQuarterOfItsArea) {
 
 TEST(Presplit, ScaleDoesNotMatter) {
   const TriangleMesh mesh = test::soup(400, 8);
-  for (const char* text : {"evh:t=10", "evh:auto,budget=1.5", "esc:k=100"}) {
+  for (const char* text : {"evh:t=10", "evh:auto,budget=1.5", "evh:clip,t=10", "esc:k=100"}) {
     const std::size_t parts = split(mesh, text).set.references.size();
     EXPECT_GT(parts, 400u) << text;
     for (const int exponent : {-60, 20, 57})
@@ -261,8 +261,9 @@ TEST(Presplit, ScenesWithoutVolumeOrAreaStayWhole) {
   TriangleMesh point;
   point.vertices = {{3, 4, 5}};
   point.triangles = {{0, 0, 0}};
-  EXPECT_EQ(split(test::grid(10), "evh:t=30").set.references.size(), 200u);  // flat
-  for (const char* text : {"evh:t=30", "evh:auto", "esc:k=1e9"}) {
+  for (const char* text : {"evh:t=30", "evh:clip,t=30"})
+    EXPECT_EQ(split(test::grid(10), text).set.references.size(), 200u);  // flat
+  for (const char* text : {"evh:t=30", "evh:auto", "evh:clip,t=30", "esc:k=1e9"}) {
     EXPECT_EQ(split(line, text).set.references.size(), 2u);
     EXPECT_EQ(split(point, text).set.references.size(), 1u);
     EXPECT_EQ(split(MeshView{}, text).set.references.size(), 0u);
@@ -270,12 +271,14 @@ TEST(Presplit, ScenesWithoutVolumeOrAreaStayWhole) {
 }
 
 TEST(EdgeVolume, LeavesScansAloneAndSplitsTurnedArchitecture) {
-  const auto growth = [](const mesh::Scene& s) {
-    return double(split(s.mesh, "evh").set.references.size()) / double(s.mesh.triangles.size());
-  };
-  EXPECT_LT(growth(scene("organic", 20'000)), 1.01);
-  EXPECT_LT(growth(scene("atrium", 20'000)), 1.01);
-  EXPECT_GT(growth(scene("atrium", 20'000, {30, 40, 20})), 1.02);
+  for (const char* text : {"evh", "evh:clip"}) {
+    const auto growth = [&](const mesh::Scene& s) {
+      return double(split(s.mesh, text).set.references.size()) / double(s.mesh.triangles.size());
+    };
+    EXPECT_LT(growth(scene("organic", 20'000)), 1.01);
+    EXPECT_LT(growth(scene("atrium", 20'000)), 1.01);
+    EXPECT_GT(growth(scene("atrium", 20'000, {30, 40, 20})), 1.02);
+  }
 }
 
 TEST(EdgeVolume, AutoKeepsTheBudgetAndUsesIt) {
@@ -298,7 +301,7 @@ TEST(EdgeVolume, AutoKeepsTheBudgetAndUsesIt) {
 TEST(Presplit, IsTheSameForEveryNumberOfThreads) {
   TriangleMesh mesh = turned(test::soup(20'000, 9), {10, 20, 30});
   mesh.vertices[17].y = std::nanf("");
-  for (const char* text : {"evh:t=12", "evh:auto,budget=1.4", "esc:k=500"}) {
+  for (const char* text : {"evh:t=12", "evh:auto,budget=1.4", "evh:clip", "esc:k=500"}) {
     const Split one = split(mesh, text);
     EXPECT_EQ(one.set.excluded, 1u);
     for (const int threads : {2, 8}) {
