@@ -111,7 +111,8 @@ constexpr OptionSpec kOptions[] = {
 constinit const BuilderInfo kd_builder = {
     .id = "kd",
     .name = "KD tree",
-    .summary = "parts space by perfect splits as KD trees do, then boxes what is left; best to compare others with",
+    .summary =
+        "parts space by perfect splits as KD trees do, then boxes what is left; best for the fewest triangle tests",
     .paper = "wald2006, popov2009",
     .cost_class = "O(n log n)",
     .splits_references = true,
