@@ -102,7 +102,7 @@ constexpr OptionSpec kOptions[] = {
      .description = "by which share planes that cut off empty space are taken for cheaper (wald2006)",
      .default_value = 0.2,
      .lowest = 0,
-     .highest = 0.999},
+     .highest = 1},
     growth_option(8),
     leaf_max_option(16, "most references in a leaf; 0: no limit but the cost")};
 
