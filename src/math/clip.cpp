@@ -69,8 +69,13 @@ void ConvexPolygon::chop(int axis, std::span<const float> positions, std::span<B
     const Point &low = rises ? from : to, &high = rises ? to : from;
     std::size_t part = slab(low[a]);
     grow(part, low);
+    if (part == positions.size() || !(positions[part] < high[a])) {
+      grow(part, high);
+      continue;
+    }
+    const double share_per_length = 1 / (high[a] - low[a]);
     for (; part < positions.size() && positions[part] < high[a]; ++part) {
-      const double share = (positions[part] - low[a]) / (high[a] - low[a]);
+      const double share = (positions[part] - low[a]) * share_per_length;
       Point crossing;
       for (std::size_t k = 0; k < 3; ++k) crossing[k] = low[k] + share * (high[k] - low[k]);
       crossing[a] = positions[part];

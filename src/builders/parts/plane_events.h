@@ -1,6 +1,7 @@
 // The events of a plane sweep: where boxes begin, end and lie flat on one axis, sorted.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 

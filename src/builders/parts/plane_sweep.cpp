@@ -25,10 +25,7 @@ struct Counts {
 /// Keeps the cheapest plane of one axis.
 class Chooser {
  public:
-  Chooser(const SweepInput& input, int axis) : input_(input) {
-    result_.best.axis = -1;
-    axis_ = axis;
-  }
+  Chooser(const SweepInput& input, int axis) : input_(input), axis_(axis) {}
 
   void offer(float position, bool flat_left, const Counts& counts, double left_area, double right_area) {
     double cost = left_area * static_cast<double>(counts.left) + right_area * static_cast<double>(counts.right);
@@ -39,24 +36,19 @@ class Chooser {
     }
     if (!(cost < result_.best.cost)) return;
     if (counts.left + counts.right - input_.references.size() > input_.spare) {
-      cheapest_overrun_ = std::min(cheapest_overrun_, cost);
+      result_.overrun_cost = std::min(result_.overrun_cost, cost);
       return;
     }
     result_.best = {axis_, position, flat_left, counts.left, counts.right, cost};
   }
 
   double best_cost() const { return result_.best.cost; }
-  SweepResult result() const {
-    SweepResult result = result_;
-    result.overrun = cheapest_overrun_ < result.best.cost;
-    return result;
-  }
+  const SweepResult& result() const { return result_; }
 
  private:
   const SweepInput& input_;
   int axis_;
   SweepResult result_;
-  double cheapest_overrun_ = kInfinity;
 };
 
 /// Areas of a part of the region as functions of the part's length on one axis.
@@ -284,12 +276,12 @@ SweepResult sweep_planes(const SweepInput& input, Executor& executor) {
   executor.for_chunks(3, 1, [&](std::size_t axis, std::size_t, std::size_t) {
     results[axis] = AxisSweep(input, events[axis], static_cast<int>(axis)).run();
   });
-  SweepResult best = results[0];
-  bool overrun[3] = {results[0].overrun, results[1].overrun, results[2].overrun};
-  for (int axis = 1; axis < 3; ++axis)
-    if (results[axis].best.cost < best.best.cost) best = results[axis];
-  best.overrun = overrun[0] || overrun[1] || overrun[2];
-  return best;
+  SweepResult all;
+  for (const SweepResult& result : results) {
+    if (result.best.cost < all.best.cost) all.best = result.best;
+    all.overrun_cost = std::min(all.overrun_cost, result.overrun_cost);
+  }
+  return all;
 }
 
 }  // namespace boxwood::builders

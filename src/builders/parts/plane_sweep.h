@@ -30,7 +30,9 @@ struct SweepInput {
 
 struct SweepResult {
   PlaneSplit best;
-  bool overrun = false;  ///< a cheaper plane was not taken because it would have added too many references
+  double overrun_cost = kInfinity;  ///< of the cheapest plane that would add too many references, if it is below best's
+
+  bool overruns() const { return overrun_cost < best.cost; }
 };
 
 /// The cheapest plane. Ties: the lowest axis, then the lowest position, then flat boxes to the left.

@@ -5,7 +5,6 @@
 #include "builders/parts/spatial_bins.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "builders/parts/area_scale.h"
@@ -13,7 +12,10 @@
 namespace boxwood::builders {
 
 SpatialBins::SpatialBins(const Box& region, int count)
-    : region_(region), count_(count), bins_(3 * static_cast<std::size_t>(count)) {
+    : region_(region),
+      count_(count),
+      bins_(3 * static_cast<std::size_t>(count)),
+      parts_(static_cast<std::size_t>(count)) {
   const Vec3 extent = region.extent();
   for (int axis = 0; axis < 3; ++axis) {
     const float scale = static_cast<float>(count) / extent[axis];
@@ -50,9 +52,8 @@ void SpatialBins::add(int axis, const refs::Reference& reference, const refs::Pr
   }
   const std::size_t cuts = static_cast<std::size_t>(last - first);
   const std::span<const float> borders(borders_[axis].data() + first + 1, cuts);
-  std::array<Box, kMostSpatialBins> parts;
-  primitives.chop(reference, axis, borders, {parts.data(), cuts + 1});
-  for (std::size_t i = 0; i <= cuts; ++i) bin(axis, first + static_cast<int>(i)).box.grow(parts[i]);
+  primitives.chop(reference, axis, borders, {parts_.data(), cuts + 1});
+  for (std::size_t i = 0; i <= cuts; ++i) bin(axis, first + static_cast<int>(i)).box.grow(parts_[i]);
 }
 
 void SpatialBins::add(const SpatialBins& other) {

@@ -48,6 +48,7 @@ class SpatialBins {
   float bins_per_length_[3];
   std::array<float, kMostSpatialBins> borders_[3];
   std::vector<Bin> bins_;
+  std::vector<Box> parts_;  ///< room for those of one reference
 };
 
 }  // namespace boxwood::builders

@@ -102,7 +102,7 @@ constexpr OptionSpec kOptions[] = {
      .description = "by which share planes that cut off empty space are taken for cheaper (wald2006)",
      .default_value = 0.2,
      .lowest = 0,
-     .highest = 0.999},
+     .highest = 1},
     growth_option(8),
     leaf_max_option(16, "most references in a leaf; 0: no limit but the cost")};
 
@@ -111,7 +111,8 @@ constexpr OptionSpec kOptions[] = {
 constinit const BuilderInfo kd_builder = {
     .id = "kd",
     .name = "KD tree",
-    .summary = "parts space by perfect splits as KD trees do, then boxes what is left; best to compare others with",
+    .summary =
+        "parts space by perfect splits as KD trees do, then boxes what is left; best for the fewest triangle tests",
     .paper = "wald2006, popov2009",
     .cost_class = "O(n log n)",
     .splits_references = true,

@@ -48,7 +48,7 @@ class SpatialSplitFinder {
     split.kind = SpatialSplit::Kind::plane;
     double cost = planes.best.cost;
     const bool pays = cost < area * static_cast<double>(range.size());
-    if (planes.overrun || !pays) {
+    if (planes.overruns() || !pays) {
       split.objects = best_object_split(range.references, kObjectBins, area_scale_, executor);
       if (!pays || split.objects.bins.cost < cost) {
         cost = split.objects.bins.cost;

@@ -112,5 +112,35 @@ TEST(Primitives, BoxesAreCutAsTheyAre) {
   EXPECT_EQ(right, (Box{{0, 0, 1}, {4, 4, 4}}));
 }
 
+TEST(Primitives, ChoppingGivesThePartsOfCuttingOnceAfterTheOther) {
+  const TriangleMesh mesh = random_triangles(200, 1, 3, 12);
+  const std::shared_ptr<const Primitives> kinds[] = {triangle_primitives(mesh), box_primitives()};
+  for (const auto& primitives : kinds)
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      Box box = mesh.view().triangle(t).bounds();
+      const int axis = static_cast<int>(t % 3), other = (axis + 1) % 3;
+      if (t % 2 == 1) box.upper[other] = box.center()[other];  // a part, no whole triangle
+      std::vector<float> positions;
+      for (int i = 1; i < 6; ++i) positions.push_back(box.lower[axis] + static_cast<float>(i) / 6 * box.extent()[axis]);
+      std::vector<Box> parts(6);
+      primitives->chop({box.lower, t, box.upper, 0}, axis, positions, parts);
+      Box rest = box;
+      for (std::size_t i = 0; i < 6; ++i) {
+        Box below = rest, above;
+        if (i < 5 && rest.lower[axis] < positions[i] && positions[i] < rest.upper[axis])
+          primitives->cut({rest.lower, t, rest.upper, 0}, axis, positions[i], below, above);
+        else if (i < 5 && !rest.is_empty() && rest.lower[axis] >= positions[i])
+          below = {}, above = rest;
+        rest = above;
+        if (below.extent()[axis] < 1e-5f) continue;  // what rounding outwards has left over
+        ASSERT_FALSE(parts[i].is_empty()) << "triangle " << t << ", part " << i;
+        for (int k = 0; k < 3; ++k) {
+          EXPECT_NEAR(parts[i].lower[k], below.lower[k], 1e-5f) << "triangle " << t << ", part " << i;
+          EXPECT_NEAR(parts[i].upper[k], below.upper[k], 1e-5f) << "triangle " << t << ", part " << i;
+        }
+      }
+    }
+}
+
 }  // namespace
 }  // namespace boxwood::refs
