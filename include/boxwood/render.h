@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -39,11 +40,14 @@ std::uint64_t hash(std::span<const Ray> rays);
 /// `normals`: shaded by the angle to the viewer, tinted by the normal. `ao`: ambient occlusion, 16 rays a pixel,
 /// smoothed over neighbours on the same surface. `depth`: nearer is lighter. `nodes`, `primitives`: heat map of visits
 /// or triangle tests per primary ray, with a colour scale and its numbers drawn into the picture. `ids`: a colour per
-/// triangle.
-enum class Shade { normals, ao, depth, nodes, primitives, ids };
+/// triangle. `clusters`: a colour per group of triangles.
+enum class Shade { normals, ao, depth, nodes, primitives, ids, clusters };
 Result<Shade> find_shade(std::string_view name);
 
-/// Traces one primary ray a pixel on the accel's executor. Errors: those of primary_rays.
-Result<Image> render(const Accel& accel, const View& view, int width, int height, Shade shade);
+/// Traces one primary ray a pixel on the accel's executor. `groups` is for `clusters` only: a number for each triangle
+/// of the mesh, equal where the colour is to be. Errors: those of primary_rays; `clusters` without a number for a
+/// triangle.
+Result<Image> render(const Accel& accel, const View& view, int width, int height, Shade shade,
+                     std::span<const std::uint32_t> groups = {});
 
 }  // namespace boxwood::render

@@ -11,11 +11,11 @@ struct ShadeName {
   Shade shade;
   std::string_view name;
 };
-constexpr ShadeName kShades[] = {{Shade::normals, "normals"},       {Shade::ao, "ao"},
-                                 {Shade::depth, "depth"},           {Shade::nodes, "nodes"},
-                                 {Shade::primitives, "primitives"}, {Shade::ids, "ids"}};
+constexpr ShadeName kShades[] = {
+    {Shade::normals, "normals"},       {Shade::ao, "ao"},   {Shade::depth, "depth"},      {Shade::nodes, "nodes"},
+    {Shade::primitives, "primitives"}, {Shade::ids, "ids"}, {Shade::clusters, "clusters"}};
 
-Status draw(const Frame& frame, Shade shade, Image& image) {
+Status draw(const Frame& frame, Shade shade, std::span<const std::uint32_t> groups, Image& image) {
   switch (shade) {
     case Shade::normals:
       return shade_normals(frame, image);
@@ -28,6 +28,8 @@ Status draw(const Frame& frame, Shade shade, Image& image) {
       return shade_heat(frame, shade, image);
     case Shade::ids:
       return shade_ids(frame, image);
+    case Shade::clusters:
+      return shade_clusters(frame, groups, image);
   }
   return {ErrorCode::invalid_argument, "there is no shade number " + std::to_string(static_cast<int>(shade))};
 }
@@ -43,12 +45,13 @@ Result<Shade> find_shade(std::string_view name) {
   return {ErrorCode::unknown_name, "unknown shade \"" + std::string(name) + "\"; there are " + names};
 }
 
-Result<Image> render(const Accel& accel, const View& view, int width, int height, Shade shade) try {
+Result<Image> render(const Accel& accel, const View& view, int width, int height, Shade shade,
+                     std::span<const std::uint32_t> groups) try {
   auto camera = Camera::make(view, width, height);
   if (!camera) return camera.error();
   const Frame frame{accel, *camera};
   Image image{.width = width, .height = height, .rgb = std::vector<std::uint8_t>(3 * camera->pixel_count())};
-  if (auto drawn = draw(frame, shade, image); !drawn) return drawn.error();
+  if (auto drawn = draw(frame, shade, groups, image); !drawn) return drawn.error();
   return image;
 } catch (const std::bad_alloc&) {
   return {ErrorCode::out_of_memory,

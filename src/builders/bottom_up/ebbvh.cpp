@@ -1,4 +1,4 @@
-// EBBVH (Houghton and Spoerer 2023, bib key ebbvh): triangles that share an edge merge in rounds, the edge with the
+// EBBVH (Houghton and Spoerer, bib key ebbvh): triangles that share an edge merge in rounds, the edge with the
 // largest box first; another builder joins the clusters that are left. Two rows of the registry: `ebbvh` is the paper,
 // all rounds and a spatial median on top; `ebbvh-gated` stops while clusters are still compact and hands over to a
 // surface area heuristic, which is better everywhere. Differs from the paper in what its listing leaves open or gets
@@ -57,7 +57,7 @@ constexpr OptionSpec kWeldOption{
     .choices = kWelds};
 constexpr OptionSpec kPairCutoffOption{
     .key = "pair_cutoff",
-    .description = "the first round that merges fewer pairs is the last one (Houghton and Spoerer 2023)",
+    .description = "the first round that merges fewer pairs is the last one (Houghton and Spoerer)",
     .default_value = 1,
     .lowest = 1,
     .highest = 1e9,
@@ -98,11 +98,11 @@ OptionSpec top_option(const Tops& tops) {
 const Tops kTops("middle"), kGatedTops("binned-sah");
 const std::array<OptionSpec, 7> kOptions{kWeldOption,         top_option(kTops),   rounds_option(0), kPairCutoffOption,
                                          gate_area_option(0), gate_size_option(0), kLeafMaxOption};
-const std::array<OptionSpec, 7> kGatedOptions{kWeldOption,       top_option(kGatedTops), rounds_option(1),
-                                              kPairCutoffOption, gate_area_option(1),    gate_size_option(0),
+const std::array<OptionSpec, 7> kGatedOptions{kWeldOption,       top_option(kGatedTops), rounds_option(3),
+                                              kPairCutoffOption, gate_area_option(0.8),  gate_size_option(0),
                                               kLeafMaxOption};
 
-constexpr std::uint32_t kNone = 0xffffffffu;
+constexpr std::uint32_t kNone = kNoCluster;
 
 /// Links between primitives become links between references: the first of each primitive.
 void name_references(AlignedBuffer<ClusterLink>& links, const refs::ReferenceSet& set) {
@@ -262,5 +262,35 @@ constinit const BuilderInfo ebbvh_gated_builder = {
     .largest_sensible = kMostReferences,
     .options = kGatedOptions,
     .build = build_ebbvh_gated};
+
+Result<std::vector<std::uint32_t>> edge_clusters(const refs::ReferenceSet& set, std::uint32_t rounds, mesh::Weld weld,
+                                                 const BuildContext& context) try {
+  std::vector<std::uint32_t> cluster_of(set.primitive_count, kNone);
+  for (const refs::Reference& reference : set.references)
+    if (reference.primitive >= set.primitive_count)
+      return {ErrorCode::malformed, "a reference names primitive " + std::to_string(reference.primitive) + " of only " +
+                                        std::to_string(set.primitive_count)};
+  AlignedBuffer<ClusterLink> links =
+      set.primitives ? links_of(set, weld, context.executor) : AlignedBuffer<ClusterLink>();
+  MergeForest forest(set.references.span(), {}, {}, 0, context.executor);
+  EdgeClustering clustering(forest, std::move(links), {}, {}, context.executor);
+  const BuildMonitor monitor(context, 1);
+  if (rounds != 0 && !clustering.run({.rounds = rounds}, monitor)) return cancelled_error();
+
+  // Numbered in the order of their first references.
+  const std::vector<std::uint32_t> roots = clustering.root_of_each_reference();
+  std::vector<std::uint32_t> number(2 * set.references.size(), kNone);
+  std::uint32_t clusters = 0;
+  for (std::size_t r = 0; r < roots.size(); ++r) {
+    std::uint32_t& n = number[roots[r]];
+    if (n == kNone) n = clusters++;
+    std::uint32_t& cluster = cluster_of[set.references[r].primitive];
+    if (cluster == kNone) cluster = n;
+  }
+  return cluster_of;
+} catch (const std::bad_alloc&) {
+  return {ErrorCode::out_of_memory,
+          "out of memory for the clusters of " + std::to_string(set.references.size()) + " references"};
+}
 
 }  // namespace boxwood::builders
