@@ -73,9 +73,10 @@ class Combiner {
   }
 
  private:
-  /// Sorts pairs of equal distance: the one that waits longer, by its later cluster, comes first.
+  /// Sorts pairs of equal distance: the one that waits longer, by its later cluster, comes first. Of those the one with
+  /// the later other cluster: then equal boxes choose each other and not all the first.
   std::pair<std::uint32_t, std::uint32_t> age(std::size_t i, std::size_t k) const {
-    return {std::max(births_[i], births_[k]), std::min(births_[i], births_[k])};
+    return {std::max(births_[i], births_[k]), ~std::min(births_[i], births_[k])};
   }
 
   void find_nearest(std::size_t i) {

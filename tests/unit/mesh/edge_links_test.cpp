@@ -14,7 +14,15 @@ namespace {
 using mesh::EdgeLink;
 using mesh::Weld;
 
-/// By definition: the uses of each edge, by triangle; areas as they come out in double, where ties are exact.
+/// The area to 22 bits after the first.
+double rounded_area(Vec3 p, Vec3 q) {
+  const double x = std::fabs(double(p.x) - q.x), y = std::fabs(double(p.y) - q.y), z = std::fabs(double(p.z) - q.z);
+  int exponent = 0;
+  const double mantissa = std::frexp(x * y + y * z + z * x, &exponent);
+  return std::ldexp(std::floor(std::ldexp(mantissa, 23)), exponent);
+}
+
+/// By definition: the uses of each edge, by triangle.
 std::vector<EdgeLink> all_links(const TriangleMesh& mesh, bool by_position) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> uses;
   const auto id = [&](std::uint32_t v) {
@@ -32,11 +40,9 @@ std::vector<EdgeLink> all_links(const TriangleMesh& mesh, bool by_position) {
   }
   std::vector<std::tuple<double, EdgeLink>> ranked;
   for (const auto& [edge, triangles] : uses) {
-    const Vec3 p = mesh.vertices[edge.first], q = mesh.vertices[edge.second];
-    const double x = std::fabs(double(p.x) - q.x), y = std::fabs(double(p.y) - q.y), z = std::fabs(double(p.z) - q.z);
+    const double area = rounded_area(mesh.vertices[edge.first], mesh.vertices[edge.second]);
     for (std::size_t i = 1; i < triangles.size(); ++i)
-      if (triangles[i - 1] != triangles[i])
-        ranked.emplace_back(x * y + y * z + z * x, EdgeLink{triangles[i - 1], triangles[i]});
+      if (triangles[i - 1] != triangles[i]) ranked.emplace_back(area, EdgeLink{triangles[i - 1], triangles[i]});
   }
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const auto& a, const auto& b) { return std::get<0>(a) > std::get<0>(b); });
