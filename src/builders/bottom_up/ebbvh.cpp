@@ -5,10 +5,7 @@
 // wrong (vertices are welded, edges sorted by both ends: mesh/edge_links.cpp), in the choice of the builder on top, and
 // in the leaves, decided by the surface area heuristic once the tree is whole (parts/merge_forest.h). O(n log n),
 // deterministic: the rounds have one result (parts/edge_clustering.cpp), and each root is one reference to the top.
-#include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <string>
 
 #include "builders/builder_list.h"
@@ -161,22 +158,14 @@ std::uint32_t merge_like(const tree::BinaryTree& top, std::vector<std::uint32_t>
   return cluster[0];
 }
 
-/// The top's prices and leaves are those of the build, counted in roots of average size. Its leaves of several roots
-/// only spare it splits: the forest decides on leaves.
-BuildOptions top_options(const OptionValues& options, const char* top, double references_per_root) {
-  const auto text = [](double value) {
-    char buffer[32];
-    return std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
-  };
-  const double intersection = std::min(options.number("cost.intersection") * references_per_root, 1e6);
-  BuildOptions result{.builder = top,
-                      .settings = {{"cost.traversal", text(options.number("cost.traversal"))},
-                                   {"cost.intersection", text(intersection)}}};
-  for (const OptionSpec& spec : find(top)->options) {
-    if (std::string_view(spec.key) != kLeafMax) continue;
-    const double roots = std::floor(options.integer(kLeafMax) / references_per_root);
-    result.settings[kLeafMax] = text(std::clamp(roots, options.integer(kLeafMax) == 0 ? 0.0 : 1.0, spec.highest));
-  }
+/// The build's prices and one root to a leaf: the forest decides on leaves. (Letting the top stop at leaves of several
+/// roots, with prices in roots, gave the same trees in the same time below surface area heuristics.)
+BuildOptions top_options(const OptionValues& options, const char* top) {
+  BuildOptions result{.builder = top};
+  for (const auto& [key, value] : options.echo())
+    if (key.starts_with("cost.")) result.settings[key] = value;
+  for (const OptionSpec& spec : find(top)->options)
+    if (std::string_view(spec.key) == kLeafMax) result.settings[kLeafMax] = "1";
   return result;
 }
 
@@ -184,8 +173,7 @@ Result<std::uint32_t> join_roots(const EdgeClustering& clustering, const OptionV
                                  MergeForest& forest, const BuildContext& context) {
   std::vector<std::uint32_t> roots = clustering.roots();
   if (roots.size() == 1) return roots[0];
-  const double references_per_root = double(forest.reference_count()) / double(roots.size());
-  const auto tree = build(as_references(roots, forest), top_options(options, top, references_per_root),
+  const auto tree = build(as_references(roots, forest), top_options(options, top),
                           BuildContext{context.executor, {}, context.cancel});
   if (!tree)
     return Error{tree.error().code, "option 'top', builder '" + std::string(top) + "': " + tree.error().message};
