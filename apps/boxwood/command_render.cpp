@@ -19,12 +19,25 @@ struct Options {
   std::string input, output, camera;
   std::string size = "1024x1024";
   std::string shade = "normals";
+  std::uint32_t rounds = 1;
+  bool rounds_given = false;
 };
+
+/// What the shade wants to know of each triangle besides its hits.
+Result<std::vector<std::uint32_t>> groups_of(const Options& options, render::Shade shade, const Input& input,
+                                             const Session& session) {
+  if (shade != render::Shade::clusters) return std::vector<std::uint32_t>();
+  const auto references = refs::make_references(input.mesh, *session.executor());
+  if (!references) return references.error();
+  return builders::edge_clusters(*references, options.rounds, mesh::Weld::position, {*session.executor()});
+}
 
 Status run_render(const Options& options) {
   const Session session("render", options.common);
   const auto shade = render::find_shade(options.shade);
   if (!shade) return shade.error();
+  if (options.rounds_given && *shade != render::Shade::clusters)
+    return Error{ErrorCode::invalid_argument, "--rounds is for --shade clusters, not for " + options.shade};
   const auto size = parse_size(options.size);
   if (!size) return size.error();
   const int width = size->first, height = size->second;
@@ -43,6 +56,8 @@ Status run_render(const Options& options) {
       run_pipeline(*input, options.pipeline, session, *shade == render::Shade::subdivided ? &split : nullptr);
   if (!pipeline) return pipeline.error();
 
+  const auto groups = groups_of(options, *shade, *input, session);
+  if (!groups) return groups.error();
   const double start = now();
   auto image = [&] {
     const Progress progress(fmt::format("rendering {}x{}", width, height), session.shows_progress());
@@ -61,6 +76,7 @@ Status run_render(const Options& options) {
   report["mesh"] = input->json();
   report["options"] = options_json(pipeline->echo);
   report["options"]["shade"] = options.shade;
+  if (*shade == render::Shade::clusters) report["options"]["rounds"] = options.rounds;
   report["options"]["size"] = options.size;
   report["camera"] = camera_text(view);
   report["excluded"] = pipeline->excluded;
@@ -81,9 +97,14 @@ void add_render_command(CLI::App& program, Run& run) {
   command.add_option("INPUT", options->input, kInputHelp)->required()->type_name("");
   options->input_options.add_to(command);
   command.add_option("-o,--output", options->output, "Picture to write")->type_name("OUT.png")->required();
-  command.add_option("--shade", options->shade, "normals, ao, depth, nodes, primitives, ids or subdivided")
+  command.add_option("--shade", options->shade, "normals, ao, depth, nodes, primitives, ids, subdivided, clusters or children")
       ->type_name("NAME")
       ->capture_default_str();
+  CLI::Option* const rounds = command
+                                  .add_option("--rounds", options->rounds,
+                                              "Rounds of merging triangles over shared edges, for --shade clusters")
+                                  ->type_name("K")
+                                  ->capture_default_str();
   add_size_option(command, options->size);
   add_camera_option(command, options->camera);
   options->pipeline.add_to(command);
@@ -93,8 +114,12 @@ void add_render_command(CLI::App& program, Run& run) {
       "  boxwood render bunny.ply -o bunny.png --shade ao\n"
       "  boxwood render scene:atrium -o visits.png --shade nodes --size 1280x720 --builder lbvh\n"
       "  boxwood render scene:spaceship -o split.png --shade subdivided --presplit evh:t=14\n"
+      "  boxwood render bunny.ply -o clusters.png --shade clusters --rounds 4\n"
       "  boxwood render bunny.ply -o left.png --camera eye=-1:0.2:0,look_at=0:0.1:0,fov=30");
-  command.callback([options, &run] { run = [options] { return run_render(*options); }; });
+  command.callback([options, rounds, &run] {
+    options->rounds_given = rounds->count() > 0;
+    run = [options] { return run_render(*options); };
+  });
 }
 
 }  // namespace boxwood::program

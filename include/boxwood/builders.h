@@ -97,4 +97,14 @@ struct BuildOptions {
 Result<tree::BinaryTree> build(refs::ReferenceSet&& references, const BuildOptions& options,
                                const BuildContext& context);
 
+/// Stands for "no cluster" in what edge_clusters returns.
+inline constexpr std::uint32_t kNoCluster = 0xffffffffu;
+
+/// The cluster of each primitive after so many rounds of merging over shared edges, as in EBBVH's figures 1 to 4
+/// (Houghton and Spoerer): numbered from 0 in the order of their first references; kNoCluster for primitives
+/// without a reference. No rounds: each reference is its own. Errors: a reference to an unknown primitive, cancelled,
+/// out of memory.
+Result<std::vector<std::uint32_t>> edge_clusters(const refs::ReferenceSet& references, std::uint32_t rounds,
+                                                 mesh::Weld weld, const BuildContext& context);
+
 }  // namespace boxwood::builders

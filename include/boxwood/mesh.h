@@ -104,9 +104,9 @@ struct EdgeLink {
 };
 /// When two triangles have a vertex in common: the same position (as weld decides), or the same index.
 enum class Weld { position, index };
-/// The links of all edges between usable triangles, in order of rank: the edge whose box has the larger area first
-/// (areas are compared to 22 bits), then the edge with the lower vertices. Three or more triangles on an edge are linked
-/// one to the next in the order of their ids. Requires check_indices to have passed. O(n), parallel, deterministic.
+/// The links of all edges between usable triangles by rank: the edge whose box has the larger area (to 22 bits) first,
+/// then the one with the lower vertices. Three or more triangles on an edge are linked each to the next by their ids.
+/// Requires check_indices to have passed. O(n), parallel, deterministic.
 AlignedBuffer<EdgeLink> edge_links(const MeshView& mesh, Weld weld, Executor& executor);
 
 // ---- Procedural scenes -------------------------------------------------------------------------------------------

@@ -40,13 +40,16 @@ std::uint64_t hash(std::span<const Ray> rays);
 /// `normals`: shaded by the angle to the viewer, tinted by the normal. `ao`: ambient occlusion, 16 rays a pixel,
 /// smoothed over neighbours on the same surface. `depth`: nearer is lighter. `nodes`, `primitives`: heat map of visits
 /// or triangle tests per primary ray, with a colour scale and its numbers drawn into the picture. `ids`: a colour per
-/// triangle. `subdivided`: like `normals`, with the marked triangles in red (Dammertz and Keller 2008, Figure 3).
-enum class Shade { normals, ao, depth, nodes, primitives, ids, subdivided };
+/// triangle. Three show a number that each triangle has: `subdivided` is `normals` with all but 0 in red (Dammertz and
+/// Keller 2008, Figure 3); `clusters` has one colour for each number (Houghton and Spoerer, Figures 1 to 4); `children`
+/// has 0 in grey, 1 in blue, 2 in orange, 3 in violet: neither, the first, the second or both of a node's children
+/// (Popov et al. 2009, Figure 2).
+enum class Shade { normals, ao, depth, nodes, primitives, ids, subdivided, clusters, children };
 Result<Shade> find_shade(std::string_view name);
 
-/// Traces one primary ray a pixel on the accel's executor. `marked` is for `subdivided`, one value per primitive id,
-/// anything but 0 is red; ids past its end are not marked. Errors: those of primary_rays.
+/// Traces one primary ray a pixel on the accel's executor. `numbers` are those of the triangles, by primitive id, for the
+/// shades that show them; ids past their end have 0. Errors: those of primary_rays.
 Result<Image> render(const Accel& accel, const View& view, int width, int height, Shade shade,
-                     std::span<const std::uint8_t> marked = {});
+                     std::span<const std::uint32_t> numbers = {});
 
 }  // namespace boxwood::render

@@ -51,6 +51,8 @@ void for_each_index(Executor& executor, std::size_t count, const F& f) {
 /// Shade::normals and Shade::subdivided.
 Status shade_normals(const Frame& frame, Image& image);
 Status shade_ids(const Frame& frame, Image& image);
+/// Refuses a hit on a triangle that has no place in `groups`.
+Status shade_clusters(const Frame& frame, std::span<const std::uint32_t> groups, Image& image);
 Status shade_depth(const Frame& frame, Image& image);
 Status shade_occlusion(const Frame& frame, Image& image);
 /// `shade` is Shade::nodes or Shade::primitives.

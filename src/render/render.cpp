@@ -15,7 +15,7 @@ constexpr ShadeName kShades[] = {
     {Shade::normals, "normals"},       {Shade::ao, "ao"},   {Shade::depth, "depth"},          {Shade::nodes, "nodes"},
     {Shade::primitives, "primitives"}, {Shade::ids, "ids"}, {Shade::subdivided, "subdivided"}};
 
-Status draw(const Frame& frame, Shade shade, Image& image) {
+Status draw(const Frame& frame, Shade shade, std::span<const std::uint32_t> groups, Image& image) {
   switch (shade) {
     case Shade::normals:
     case Shade::subdivided:
@@ -29,6 +29,8 @@ Status draw(const Frame& frame, Shade shade, Image& image) {
       return shade_heat(frame, shade, image);
     case Shade::ids:
       return shade_ids(frame, image);
+    case Shade::clusters:
+      return shade_clusters(frame, groups, image);
   }
   return {ErrorCode::invalid_argument, "there is no shade number " + std::to_string(static_cast<int>(shade))};
 }
@@ -50,7 +52,7 @@ Result<Image> render(const Accel& accel, const View& view, int width, int height
   if (!camera) return camera.error();
   const Frame frame{accel, *camera, shade == Shade::subdivided ? marked : std::span<const std::uint8_t>{}};
   Image image{.width = width, .height = height, .rgb = std::vector<std::uint8_t>(3 * camera->pixel_count())};
-  if (auto drawn = draw(frame, shade, image); !drawn) return drawn.error();
+  if (auto drawn = draw(frame, shade, groups, image); !drawn) return drawn.error();
   return image;
 } catch (const std::bad_alloc&) {
   return {ErrorCode::out_of_memory,

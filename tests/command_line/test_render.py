@@ -29,7 +29,7 @@ def read_png(path):
 class Render(CommandLineTest):
     def test_every_shade(self):
         pictures = set()
-        for shade in ("normals", "ao", "depth", "nodes", "primitives", "ids"):
+        for shade in ("normals", "ao", "depth", "nodes", "primitives", "ids", "clusters"):
             with self.subTest(shade):
                 path = self.folder / f"{shade}.png"
                 report = self.report("render", SCENE, "-o", path, "--size", "200x120", "--shade", shade)
@@ -40,7 +40,7 @@ class Render(CommandLineTest):
                 self.assertEqual((width, height), (200, 120))
                 self.assertGreater(len(set(pixels)), 20, "the picture shows something")
                 pictures.add(pixels)
-        self.assertEqual(len(pictures), 6)
+        self.assertEqual(len(pictures), 7)
 
     def test_the_printed_camera_repeats_the_picture(self):
         report = self.report("render", self.cube, "-o", "a.png", "--size", "40x30")

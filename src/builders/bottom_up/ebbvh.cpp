@@ -1,14 +1,11 @@
-// EBBVH (Houghton and Spoerer 2023, bib key ebbvh): triangles that share an edge merge in rounds, the edge with the
+// EBBVH (Houghton and Spoerer, bib key ebbvh): triangles that share an edge merge in rounds, the edge with the
 // largest box first; another builder joins the clusters that are left. Two rows of the registry: `ebbvh` is the paper,
 // all rounds and a spatial median on top; `ebbvh-gated` stops while clusters are still compact and hands over to a
 // surface area heuristic, which is better everywhere. Differs from the paper in what its listing leaves open or gets
 // wrong (vertices are welded, edges sorted by both ends: mesh/edge_links.cpp), in the choice of the builder on top, and
 // in the leaves, decided by the surface area heuristic once the tree is whole (parts/merge_forest.h). O(n log n),
 // deterministic: the rounds have one result (parts/edge_clustering.cpp), and each root is one reference to the top.
-#include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <string>
 
 #include "builders/builder_list.h"
@@ -57,7 +54,7 @@ constexpr OptionSpec kWeldOption{
     .choices = kWelds};
 constexpr OptionSpec kPairCutoffOption{
     .key = "pair_cutoff",
-    .description = "the first round that merges fewer pairs is the last one (Houghton and Spoerer 2023)",
+    .description = "the first round that merges fewer pairs is the last one (Houghton and Spoerer)",
     .default_value = 1,
     .lowest = 1,
     .highest = 1e9,
@@ -98,11 +95,11 @@ OptionSpec top_option(const Tops& tops) {
 const Tops kTops("middle"), kGatedTops("binned-sah");
 const std::array<OptionSpec, 7> kOptions{kWeldOption,         top_option(kTops),   rounds_option(0), kPairCutoffOption,
                                          gate_area_option(0), gate_size_option(0), kLeafMaxOption};
-const std::array<OptionSpec, 7> kGatedOptions{kWeldOption,       top_option(kGatedTops), rounds_option(1),
-                                              kPairCutoffOption, gate_area_option(1),    gate_size_option(0),
+const std::array<OptionSpec, 7> kGatedOptions{kWeldOption,       top_option(kGatedTops), rounds_option(3),
+                                              kPairCutoffOption, gate_area_option(0.8),  gate_size_option(0),
                                               kLeafMaxOption};
 
-constexpr std::uint32_t kNone = 0xffffffffu;
+constexpr std::uint32_t kNone = kNoCluster;
 
 /// Links between primitives become links between references: the first of each primitive.
 void name_references(AlignedBuffer<ClusterLink>& links, const refs::ReferenceSet& set) {
@@ -161,22 +158,14 @@ std::uint32_t merge_like(const tree::BinaryTree& top, std::vector<std::uint32_t>
   return cluster[0];
 }
 
-/// The top's prices and leaves are those of the build, counted in roots of average size. Its leaves of several roots
-/// only spare it splits: the forest decides on leaves.
-BuildOptions top_options(const OptionValues& options, const char* top, double references_per_root) {
-  const auto text = [](double value) {
-    char buffer[32];
-    return std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
-  };
-  const double intersection = std::min(options.number("cost.intersection") * references_per_root, 1e6);
-  BuildOptions result{.builder = top,
-                      .settings = {{"cost.traversal", text(options.number("cost.traversal"))},
-                                   {"cost.intersection", text(intersection)}}};
-  for (const OptionSpec& spec : find(top)->options) {
-    if (std::string_view(spec.key) != kLeafMax) continue;
-    const double roots = std::floor(options.integer(kLeafMax) / references_per_root);
-    result.settings[kLeafMax] = text(std::clamp(roots, options.integer(kLeafMax) == 0 ? 0.0 : 1.0, spec.highest));
-  }
+/// The build's prices and one root to a leaf: the forest decides on leaves. (Letting the top stop at leaves of several
+/// roots, with prices in roots, gave the same trees in the same time below surface area heuristics.)
+BuildOptions top_options(const OptionValues& options, const char* top) {
+  BuildOptions result{.builder = top};
+  for (const auto& [key, value] : options.echo())
+    if (key.starts_with("cost.")) result.settings[key] = value;
+  for (const OptionSpec& spec : find(top)->options)
+    if (std::string_view(spec.key) == kLeafMax) result.settings[kLeafMax] = "1";
   return result;
 }
 
@@ -184,8 +173,7 @@ Result<std::uint32_t> join_roots(const EdgeClustering& clustering, const OptionV
                                  MergeForest& forest, const BuildContext& context) {
   std::vector<std::uint32_t> roots = clustering.roots();
   if (roots.size() == 1) return roots[0];
-  const double references_per_root = double(forest.reference_count()) / double(roots.size());
-  const auto tree = build(as_references(roots, forest), top_options(options, top, references_per_root),
+  const auto tree = build(as_references(roots, forest), top_options(options, top),
                           BuildContext{context.executor, {}, context.cancel});
   if (!tree)
     return Error{tree.error().code, "option 'top', builder '" + std::string(top) + "': " + tree.error().message};
@@ -262,5 +250,35 @@ constinit const BuilderInfo ebbvh_gated_builder = {
     .largest_sensible = kMostReferences,
     .options = kGatedOptions,
     .build = build_ebbvh_gated};
+
+Result<std::vector<std::uint32_t>> edge_clusters(const refs::ReferenceSet& set, std::uint32_t rounds, mesh::Weld weld,
+                                                 const BuildContext& context) try {
+  std::vector<std::uint32_t> cluster_of(set.primitive_count, kNone);
+  for (const refs::Reference& reference : set.references)
+    if (reference.primitive >= set.primitive_count)
+      return {ErrorCode::malformed, "a reference names primitive " + std::to_string(reference.primitive) + " of only " +
+                                        std::to_string(set.primitive_count)};
+  AlignedBuffer<ClusterLink> links =
+      set.primitives ? links_of(set, weld, context.executor) : AlignedBuffer<ClusterLink>();
+  MergeForest forest(set.references.span(), {}, {}, 0, context.executor);
+  EdgeClustering clustering(forest, std::move(links), {}, {}, context.executor);
+  const BuildMonitor monitor(context, 1);
+  if (rounds != 0 && !clustering.run({.rounds = rounds}, monitor)) return cancelled_error();
+
+  // Numbered in the order of their first references.
+  const std::vector<std::uint32_t> roots = clustering.root_of_each_reference();
+  std::vector<std::uint32_t> number(2 * set.references.size(), kNone);
+  std::uint32_t clusters = 0;
+  for (std::size_t r = 0; r < roots.size(); ++r) {
+    std::uint32_t& n = number[roots[r]];
+    if (n == kNone) n = clusters++;
+    std::uint32_t& cluster = cluster_of[set.references[r].primitive];
+    if (cluster == kNone) cluster = n;
+  }
+  return cluster_of;
+} catch (const std::bad_alloc&) {
+  return {ErrorCode::out_of_memory,
+          "out of memory for the clusters of " + std::to_string(set.references.size()) + " references"};
+}
 
 }  // namespace boxwood::builders

@@ -88,11 +88,10 @@ class LocallyOrderedClustering {
     float areas[2 * kMostRadius + 1];
     now_.boxes.joined_half_areas(i, first, last - first, areas);
     areas[i - first] = kInfinity;
-    float smallest = kInfinity;
-    for (std::size_t k = 0; k < last - first; ++k) smallest = minimum(areas[k], smallest);
+    const float distance = smallest(areas, last - first);
     std::size_t best = SIZE_MAX;  // place xor i
     for (std::size_t k = 0; k < last - first; ++k)
-      if (areas[k] == smallest && first + k != i) best = std::min(best, (first + k) ^ i);
+      if (areas[k] == distance && first + k != i) best = std::min(best, (first + k) ^ i);
     return std::uint32_t(best ^ i);
   }
 

@@ -45,6 +45,19 @@ class BoxColumns {
   std::vector<float> columns_[6];
 };
 
+/// The smallest of some areas, infinity if there are none. In eight lanes, which compilers turn into SIMD registers.
+inline float smallest(const float* areas, std::size_t count) {
+  constexpr std::size_t kLanes = 8;
+  float lanes[kLanes];
+  for (float& lane : lanes) lane = kInfinity;
+  std::size_t k = 0;
+  for (; k + kLanes <= count; k += kLanes)
+    for (std::size_t lane = 0; lane < kLanes; ++lane) lanes[lane] = minimum(areas[k + lane], lanes[lane]);
+  for (; k < count; ++k) lanes[0] = minimum(areas[k], lanes[0]);
+  for (const float lane : lanes) lanes[0] = minimum(lane, lanes[0]);
+  return lanes[0];
+}
+
 /// A box in units of the scene (see area_scale): exact but for what is far below the scene's size.
 inline Box scaled(const Box& box, float scale) {
   return {box.lower * scale, box.upper * scale};

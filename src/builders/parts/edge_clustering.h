@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "boxwood/mesh.h"
+#include "boxwood/refs.h"
 #include "builders/parts/build_monitor.h"
 #include "builders/parts/merge_forest.h"
 

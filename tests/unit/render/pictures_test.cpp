@@ -47,6 +47,8 @@ TEST(FindShade, KnowsAllNamesAndListsThemForAnUnknownOne) {
     ASSERT_TRUE(shade);
     EXPECT_EQ(*shade, kAllShades[i]);
   }
+  ASSERT_TRUE(find_shade("clusters"));
+  EXPECT_EQ(*find_shade("clusters"), Shade::clusters);
   for (const char* wrong : {"", "Normals", "heat", "ao "}) {
     const auto shade = find_shade(wrong);
     ASSERT_FALSE(shade);
@@ -166,6 +168,27 @@ TEST(Render, IdsAreOneColourPerTriangle) {
   }
   EXPECT_GT(color_of.size(), 20u);
   EXPECT_EQ(distinct.size(), color_of.size());
+}
+
+TEST(Render, ClustersAreOneColourPerGroupAndNeedANumberForEachTriangle) {
+  const Accel accel = build(square(1));
+  const int size = 31;
+  const auto difference = [&](std::vector<std::uint32_t> groups) {
+    const auto image = render(accel, kFromAbove, size, size, Shade::clusters, groups);
+    if (!image) throw std::runtime_error(image.error().message);
+    // Above and below the centre: the two triangles, seen at one angle.
+    const Rgb upper = pixel(*image, 15, 11), lower = pixel(*image, 15, 19);
+    int sum = 0;
+    for (std::size_t c = 0; c < 3; ++c) sum += std::abs(upper[c] - lower[c]);
+    return sum;
+  };
+  EXPECT_LE(difference({7, 7}), 3);  // rounding
+  EXPECT_GT(difference({7, 8}), 20);
+  for (const std::vector<std::uint32_t>& groups : {std::vector<std::uint32_t>{}, {1}}) {
+    const auto refused = render(accel, kFromAbove, size, size, Shade::clusters, groups);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("number for each triangle"), std::string::npos);
+  }
 }
 
 TEST(Render, NormalsAreLightestWhereTheSurfaceFacesTheEyeAndSeeBothSides) {
