@@ -117,8 +117,9 @@ TEST_P(BuilderMatrix, PartsOfSplitPrimitivesAreAllKept) {
   const auto tree = builders::build(std::move(set), {info().id, {}}, {executor});
   ASSERT_TRUE(tree) << tree.error().message;
   EXPECT_TRUE(tree->splits_references);
-  if (!info().splits_references)
-    EXPECT_LE(tree->references.size(), 2 * boxes.size());  // parts that meet in a leaf are one reference there
+  if (!info().splits_references) {  // parts that meet in a leaf are one reference there
+    EXPECT_LE(tree->references.size(), 2 * boxes.size());
+  }
   EXPECT_GE(tree->references.size(), boxes.size());
   const Status valid = tree::validate(*tree, {.primitive_boxes = boxes});
   EXPECT_TRUE(valid) << valid.error().message;
