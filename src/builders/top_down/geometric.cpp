@@ -35,7 +35,7 @@ constexpr OptionSpec kOptions[] = {
      .description = "up to so many references of a node, their own sides are the planes (Popov et al. 2009, 3.1)",
      .default_value = 0,
      .lowest = 0,
-     .highest = 12,
+     .highest = 8,
      .integer = true},
     {.key = kCost,
      .description = "what partitions are compared by: plain = area times count; recursive = trees of spatial medians",

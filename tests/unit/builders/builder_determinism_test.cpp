@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(All, BuilderDeterminism, ::testing::Range<std::size_t>(
                          builder_name);
 
 TEST_P(BuilderDeterminism, Soup) {
-  check(testing::soup(count(200000, kJustLarge), 21));
+  check(testing::soup(count(200000, 4000), 21));
 }
 
 TEST_P(BuilderDeterminism, Surface) {
@@ -63,12 +63,12 @@ TEST_P(BuilderDeterminism, Surface) {
 }
 
 TEST_P(BuilderDeterminism, EqualBoxes) {
-  check(testing::Boxes(count(100000, kJustLarge), Box{{1, 2, 3}, {2, 3, 4}}));
+  check(testing::Boxes(count(100000, 3000), Box{{1, 2, 3}, {2, 3, 4}}));
 }
 
 TEST_P(BuilderDeterminism, FewCentroidsManyTies) {
   testing::Random random(5);
-  check(testing::make_boxes(count(100000, 3000), [&](std::size_t) {
+  check(testing::make_boxes(count(100000, kJustLarge), [&](std::size_t) {
     const auto cell = [&] { return std::floor(4 * random()); };
     const Vec3 p{cell(), cell(), cell()};
     return Box{p, p + Vec3{1, 1, 1}};
