@@ -39,8 +39,9 @@ struct SplittingRange {
 template <class Finder>
 class SplittingDriver {
  public:
-  SplittingDriver(Finder& finder, const BuildContext& context)
-      : finder_(finder), executor_(context.executor), monitor_(context, kProgressSteps) {}
+  /// Ranges of more references than `large_range` are worked on by all threads.
+  SplittingDriver(Finder& finder, const BuildContext& context, std::size_t large_range = kLargeRange)
+      : finder_(finder), executor_(context.executor), monitor_(context, kProgressSteps), large_range_(large_range) {}
 
   /// Builds over the references, of which the tree may have `spare` more. An error when it was cancelled or the tree
   /// has more references than 32-bit numbers can count.
@@ -103,7 +104,7 @@ class SplittingDriver {
   std::vector<Children> split_round(std::vector<SplittingRange>& ranges) {
     std::vector<Children> children(ranges.size());
     const auto split = [&](std::size_t i, Executor& executor) {
-      if (ranges[i].size() > kLargeRange)
+      if (ranges[i].size() > large_range_)
         children[i].split = split_or_leaf(ranges[i], executor, children[i].left, children[i].right);
     };
     if (ranges.size() < kManyRanges) {
@@ -224,6 +225,7 @@ class SplittingDriver {
   Finder& finder_;
   Executor& executor_;
   BuildMonitor monitor_;
+  std::size_t large_range_;
   std::vector<tree::Node> top_;
 };
 

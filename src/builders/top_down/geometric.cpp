@@ -190,7 +190,7 @@ Result<tree::BinaryTree> build_geometric(refs::ReferenceSet&& set, const OptionV
   AlignedBuffer<std::uint32_t> ids;
   {
     GeometricFinder finder(std::move(set), options, context.executor);
-    TopDownDriver<GeometricFinder> driver(finder, count, context);
+    TopDownDriver<GeometricFinder> driver(finder, count, context, kLargeSearch);
     if (!driver.run(finder.root(context.executor))) return cancelled_error();
     nodes = std::move(driver.nodes());
     ids = std::move(driver.ids());

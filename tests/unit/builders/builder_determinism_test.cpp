@@ -8,9 +8,6 @@
 namespace boxwood {
 namespace {
 
-/// A little more than the references from which on a range is worked on in parallel (builders/parts/build_range.h).
-constexpr std::size_t kJustLarge = 66000;
-
 bool equal_bits(const tree::BinaryTree& a, const tree::BinaryTree& b) {
   return a.nodes.size() == b.nodes.size() && a.references.size() == b.references.size() &&
          std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.bytes()) == 0 &&
@@ -19,7 +16,8 @@ bool equal_bits(const tree::BinaryTree& a, const tree::BinaryTree& b) {
 
 class BuilderDeterminism : public ::testing::TestWithParam<std::size_t> {
  protected:
-  /// How many boxes to build over: `wanted`, but for builders that say they are slower than n log n only `few`.
+  /// How many boxes to build over: `wanted`, but for builders that say they are slower than n log n only `few`. These
+  /// work in parallel on ranges of more than 4096 references already (kLargeSearch).
   static std::size_t count(std::size_t wanted, std::size_t few) {
     const std::string_view cost_class = builders::registry()[GetParam()].cost_class;
     const bool is_quick = cost_class == "O(n)" || cost_class == "O(n log n)";
@@ -55,20 +53,20 @@ INSTANTIATE_TEST_SUITE_P(All, BuilderDeterminism, ::testing::Range<std::size_t>(
                          builder_name);
 
 TEST_P(BuilderDeterminism, Soup) {
-  check(testing::soup(count(200000, 4000), 21));
+  check(testing::soup(count(200000, 6000), 21));
 }
 
 TEST_P(BuilderDeterminism, Surface) {
-  check(testing::height_field(count(320, 60)));
+  check(testing::height_field(count(320, 75)));
 }
 
 TEST_P(BuilderDeterminism, EqualBoxes) {
-  check(testing::Boxes(count(100000, 3000), Box{{1, 2, 3}, {2, 3, 4}}));
+  check(testing::Boxes(count(100000, 6000), Box{{1, 2, 3}, {2, 3, 4}}));
 }
 
 TEST_P(BuilderDeterminism, FewCentroidsManyTies) {
   testing::Random random(5);
-  check(testing::make_boxes(count(100000, kJustLarge), [&](std::size_t) {
+  check(testing::make_boxes(count(100000, 6000), [&](std::size_t) {
     const auto cell = [&] { return std::floor(4 * random()); };
     const Vec3 p{cell(), cell(), cell()};
     return Box{p, p + Vec3{1, 1, 1}};
@@ -77,7 +75,7 @@ TEST_P(BuilderDeterminism, FewCentroidsManyTies) {
 
 TEST_P(BuilderDeterminism, OneBigClusterAndAFewOutliers) {
   // Splits that peel off a handful of references keep ranges above the size that is worked on in parallel.
-  testing::Boxes boxes = testing::soup(count(100000, 3000), 22, 1e-3f);
+  testing::Boxes boxes = testing::soup(count(100000, 6000), 22, 1e-3f);
   for (int i = 0; i < 40; ++i) {
     const float x = std::ldexp(1.0f, i);
     boxes[static_cast<std::size_t>(i) * (boxes.size() / 100)] = {{x, x, x}, {1.5f * x, x, x}};
