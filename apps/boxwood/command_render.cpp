@@ -1,4 +1,6 @@
 // boxwood render: a picture of a mesh, or of the work its rays cost.
+#include <optional>
+
 #include "boxwood/io.h"
 #include "boxwood/render.h"
 #include "camera.h"
@@ -18,12 +20,55 @@ struct Options {
   std::string input, output, camera;
   std::string size = "1024x1024";
   std::string shade = "normals";
+  std::optional<std::uint32_t> node;
 };
+
+constexpr std::string_view kChildren = "children";
+
+/// The primitives below the left and the right child of a node.
+Result<std::vector<render::Group>> groups_of_children(const tree::BinaryTree& tree, std::uint32_t node) {
+  if (node >= tree.nodes.size())
+    return {ErrorCode::out_of_range, fmt::format("there is no node {}; the tree has {}", node, tree.nodes.size())};
+  if (tree.nodes[node].is_leaf())
+    return {ErrorCode::invalid_argument, fmt::format("node {} is a leaf and has no children to show", node)};
+  // A subtree's references are one range, from its leftmost leaf to its rightmost.
+  const auto edge = [&](std::uint32_t at, std::uint32_t side) {
+    while (!tree.nodes[at].is_leaf()) at = tree.nodes[at].first + side;
+    return tree.nodes[at];
+  };
+  std::vector<render::Group> groups(tree.primitive_count, render::Group::none);
+  for (const std::uint32_t side : {0u, 1u}) {
+    const std::uint32_t child = tree.nodes[node].first + side;
+    const tree::Node last = edge(child, 1);
+    for (std::uint32_t i = edge(child, 0).first; i < last.first + last.count; ++i) {
+      render::Group& group = groups[tree.references[i]];
+      const auto bits = static_cast<unsigned>(group) | (side == 0 ? 1u : 2u);
+      group = static_cast<render::Group>(bits);
+    }
+  }
+  return groups;
+}
+
+/// Before anything slow is done.
+Status check_shade(const Options& options) {
+  if (options.shade == kChildren) return {};
+  if (options.node) return {ErrorCode::invalid_argument, "--node is for --shade children only"};
+  const auto shade = render::find_shade(options.shade);
+  if (!shade) return {shade.error().code, shade.error().message + ", children"};
+  return {};
+}
+
+Result<Image> draw(const Options& options, const Pipeline& pipeline, const View& view, int width, int height) {
+  if (options.shade != kChildren)
+    return render::render(pipeline.accel, view, width, height, *render::find_shade(options.shade));
+  const auto groups = groups_of_children(pipeline.tree, options.node.value_or(0));
+  if (!groups) return groups.error();
+  return render::render_groups(pipeline.accel, view, width, height, *groups);
+}
 
 Status run_render(const Options& options) {
   const Session session("render", options.common);
-  const auto shade = render::find_shade(options.shade);
-  if (!shade) return shade.error();
+  if (Status status = check_shade(options); !status) return status;
   const auto size = parse_size(options.size);
   if (!size) return size.error();
   const int width = size->first, height = size->second;
@@ -43,7 +88,7 @@ Status run_render(const Options& options) {
   const double start = now();
   auto image = [&] {
     const Progress progress(fmt::format("rendering {}x{}", width, height), session.shows_progress());
-    return render::render(pipeline->accel, view, width, height, *shade);
+    return draw(options, *pipeline, view, width, height);
   }();
   if (!image) return image.error();
   const double seconds = now() - start;
@@ -58,6 +103,7 @@ Status run_render(const Options& options) {
   report["mesh"] = input->json();
   report["options"] = options_json(pipeline->echo);
   report["options"]["shade"] = options.shade;
+  if (options.shade == kChildren) report["options"]["node"] = options.node.value_or(0);
   report["options"]["size"] = options.size;
   report["camera"] = camera_text(view);
   report["excluded"] = pipeline->excluded;
@@ -76,9 +122,14 @@ void add_render_command(CLI::App& program, Run& run) {
   CLI::App& command = *program.add_subcommand("render", "Draw a mesh, or a heat map of what its rays cost, as PNG");
   command.add_option("INPUT", options->input, kInputHelp)->required()->type_name("");
   command.add_option("-o,--output", options->output, "Picture to write")->type_name("OUT.png")->required();
-  command.add_option("--shade", options->shade, "normals, ao, depth, nodes, primitives or ids")
+  command.add_option("--shade", options->shade, "normals, ao, depth, nodes, primitives, ids or children")
       ->type_name("NAME")
       ->capture_default_str();
+  command
+      .add_option(
+          "--node", options->node,
+          "Node of the binary tree, numbered depth first, whose two children --shade children shows (default 0)")
+      ->type_name("N");
   add_size_option(command, options->size);
   add_camera_option(command, options->camera);
   options->pipeline.add_to(command);
@@ -87,6 +138,7 @@ void add_render_command(CLI::App& program, Run& run) {
       "\nExamples:\n"
       "  boxwood render bunny.ply -o bunny.png --shade ao\n"
       "  boxwood render scene:atrium -o visits.png --shade nodes --size 1280x720 --builder lbvh\n"
+      "  boxwood render bunny.ply -o split.png --shade children --node 0 --builder geometric\n"
       "  boxwood render bunny.ply -o left.png --camera eye=-1:0.2:0,look_at=0:0.1:0,fov=30");
   command.callback([options, &run] { run = [options] { return run_render(*options); }; });
 }

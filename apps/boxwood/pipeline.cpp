@@ -85,7 +85,7 @@ Result<Pipeline> run_pipeline(const Input& input, const PipelineOptions& options
   const double seconds = built->reference_seconds + built->tree_seconds + encoded->encode_seconds;
   session.note("{}\n{}\n{}\nbuilt in {:.1f} ms\n", session.environment_line(encoded->accel.isa()), input.line(),
                options_line(*echo), 1e3 * seconds);
-  return Pipeline{std::move(encoded->accel), built->excluded, seconds, std::move(*echo)};
+  return Pipeline{std::move(encoded->accel), built->excluded, seconds, std::move(*echo), std::move(built->tree)};
 }
 
 }  // namespace boxwood::program

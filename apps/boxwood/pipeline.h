@@ -48,6 +48,7 @@ struct Pipeline {
   std::size_t excluded = 0;
   double build_seconds = 0;
   std::vector<std::pair<std::string, std::string>> echo;  ///< resolved options, builder and layout first
+  tree::BinaryTree tree;                                  ///< what the accel was made of
 };
 /// Builds with a progress bar; warns about excluded triangles; notes what it did.
 Result<Pipeline> run_pipeline(const Input& input, const PipelineOptions& options, const Session& session);

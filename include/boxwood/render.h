@@ -46,4 +46,13 @@ Result<Shade> find_shade(std::string_view name);
 /// Traces one primary ray a pixel on the accel's executor. Errors: those of primary_rays.
 Result<Image> render(const Accel& accel, const View& view, int width, int height, Shade shade);
 
+/// What render_groups colours a triangle by.
+enum class Group : std::uint8_t { none, first, second, both };
+
+/// The mesh with its triangles in the colours of their groups, shaded by the angle to the viewer: `none` pale grey,
+/// `first` blue, `second` orange, `both` violet. `groups` by triangle id; with the triangles below the two children of
+/// a node it shows a partition. Errors: those of primary_rays; invalid_argument when a triangle that is hit has no
+/// group.
+Result<Image> render_groups(const Accel& accel, const View& view, int width, int height, std::span<const Group> groups);
+
 }  // namespace boxwood::render

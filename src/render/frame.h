@@ -51,4 +51,7 @@ Status shade_occlusion(const Frame& frame, Image& image);
 /// `shade` is Shade::nodes or Shade::primitives.
 Status shade_heat(const Frame& frame, Shade shade, Image& image);
 
+/// Colours by group, for render_groups.
+Status shade_groups(const Frame& frame, std::span<const Group> groups, Image& image);
+
 }  // namespace boxwood::render

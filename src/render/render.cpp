@@ -32,6 +32,19 @@ Status draw(const Frame& frame, Shade shade, Image& image) {
   return {ErrorCode::invalid_argument, "there is no shade number " + std::to_string(static_cast<int>(shade))};
 }
 
+Result<Image> make_image(const Accel& accel, const View& view, int width, int height,
+                         FunctionRef<Status(const Frame&, Image&)> fill) try {
+  auto camera = Camera::make(view, width, height);
+  if (!camera) return camera.error();
+  const Frame frame{accel, *camera};
+  Image image{.width = width, .height = height, .rgb = std::vector<std::uint8_t>(3 * camera->pixel_count())};
+  if (auto drawn = fill(frame, image); !drawn) return drawn.error();
+  return image;
+} catch (const std::bad_alloc&) {
+  return {ErrorCode::out_of_memory,
+          "not enough memory for a picture of " + std::to_string(width) + " x " + std::to_string(height) + " pixels"};
+}
+
 }  // namespace
 
 Result<Shade> find_shade(std::string_view name) {
@@ -43,16 +56,15 @@ Result<Shade> find_shade(std::string_view name) {
   return {ErrorCode::unknown_name, "unknown shade \"" + std::string(name) + "\"; there are " + names};
 }
 
-Result<Image> render(const Accel& accel, const View& view, int width, int height, Shade shade) try {
-  auto camera = Camera::make(view, width, height);
-  if (!camera) return camera.error();
-  const Frame frame{accel, *camera};
-  Image image{.width = width, .height = height, .rgb = std::vector<std::uint8_t>(3 * camera->pixel_count())};
-  if (auto drawn = draw(frame, shade, image); !drawn) return drawn.error();
-  return image;
-} catch (const std::bad_alloc&) {
-  return {ErrorCode::out_of_memory,
-          "not enough memory for a picture of " + std::to_string(width) + " x " + std::to_string(height) + " pixels"};
+Result<Image> render(const Accel& accel, const View& view, int width, int height, Shade shade) {
+  return make_image(accel, view, width, height,
+                    [shade](const Frame& frame, Image& image) { return draw(frame, shade, image); });
+}
+
+Result<Image> render_groups(const Accel& accel, const View& view, int width, int height,
+                            std::span<const Group> groups) {
+  return make_image(accel, view, width, height,
+                    [groups](const Frame& frame, Image& image) { return shade_groups(frame, groups, image); });
 }
 
 }  // namespace boxwood::render

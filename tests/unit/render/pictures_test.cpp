@@ -249,5 +249,24 @@ TEST(Render, SameBitsOnEveryExecutor) {
   }
 }
 
+TEST(RenderGroups, GivesEachGroupItsColourAndRefusesTrianglesWithoutOne) {
+  const Accel accel = build(square(1));
+  const std::size_t triangles = 2;
+  std::set<std::set<Rgb>> pictures;
+  for (const Group group : {Group::none, Group::first, Group::second, Group::both}) {
+    const auto image = render_groups(accel, kFromAbove, 24, 24, std::vector<Group>(triangles, group));
+    ASSERT_TRUE(image) << image.error().message;
+    pictures.insert(colors(*image));
+  }
+  EXPECT_EQ(pictures.size(), 4u);
+  const auto parted = render_groups(accel, kFromAbove, 24, 24, std::vector{Group::first, Group::second});
+  ASSERT_TRUE(parted);
+  EXPECT_EQ(pictures.count(colors(*parted)), 0u);
+  const auto too_few = render_groups(accel, kFromAbove, 24, 24, {});
+  ASSERT_FALSE(too_few);
+  EXPECT_EQ(too_few.error().code, ErrorCode::invalid_argument);
+  EXPECT_EQ(render_groups(accel, kFromAbove, 0, 5, {}).error().code, ErrorCode::out_of_range);
+}
+
 }  // namespace
 }  // namespace boxwood::render
