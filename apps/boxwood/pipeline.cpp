@@ -56,7 +56,7 @@ Result<builders::BuildOptions> PipelineOptions::build_options() const {
 
 Result<BuiltTree> build_tree(const MeshView& mesh, const refs::Presplit& presplit,
                              const builders::BuildOptions& options, Executor& executor,
-                             const std::function<void(double)>& progress, std::vector<std::uint8_t>* split) {
+                             const std::function<void(double)>& progress, std::vector<std::uint32_t>* split) {
   BuiltTree built;
   const double start = now();
   auto references = refs::make_references(mesh, executor);
@@ -66,7 +66,7 @@ Result<BuiltTree> build_tree(const MeshView& mesh, const refs::Presplit& prespli
   references = refs::apply_presplit(std::move(*references), mesh, presplit, executor, &built.presplit);
   if (!references) return references.error();
   built.presplit_seconds = now() - start - built.reference_seconds;
-  std::vector<std::uint8_t> seen(split ? references->primitive_count : 0), repeated = seen;
+  std::vector<std::uint32_t> seen(split ? references->primitive_count : 0), repeated = seen;
   const auto mark = [&](std::uint32_t primitive) { (seen[primitive] ? repeated : seen)[primitive] = 1; };
   if (split)
     for (const refs::Reference& reference : references->references) mark(reference.primitive);
@@ -106,7 +106,7 @@ Result<std::vector<std::pair<std::string, std::string>>> echo_options(const buil
 }
 
 Result<Pipeline> run_pipeline(const Input& input, const PipelineOptions& options, const Session& session,
-                              std::vector<std::uint8_t>* split) {
+                              std::vector<std::uint32_t>* split) {
   const auto build_options = options.build_options();
   if (!build_options) return build_options.error();
   const auto presplit = refs::parse_presplit(options.presplit);
@@ -125,7 +125,8 @@ Result<Pipeline> run_pipeline(const Input& input, const PipelineOptions& options
   const double seconds = built->seconds() + encoded->encode_seconds;
   session.note("{}\n{}\n{}\nbuilt in {:.1f} ms\n", session.environment_line(encoded->accel.isa()), input.line(),
                options_line(*echo), 1e3 * seconds);
-  return Pipeline{std::move(encoded->accel), built->excluded, built->presplit, seconds, std::move(*echo)};
+  return Pipeline{std::move(encoded->accel), built->excluded,       built->presplit, seconds,
+                  std::move(*echo),          std::move(built->tree)};
 }
 
 }  // namespace boxwood::program

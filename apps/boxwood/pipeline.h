@@ -45,7 +45,7 @@ struct BuiltTree {
 Result<BuiltTree> build_tree(const MeshView& mesh, const refs::Presplit& presplit,
                              const builders::BuildOptions& options, Executor& executor,
                              const std::function<void(double)>& progress = {},
-                             std::vector<std::uint8_t>* split = nullptr);
+                             std::vector<std::uint32_t>* split = nullptr);
 
 struct BuiltAccel {
   Accel accel;
@@ -61,10 +61,11 @@ struct Pipeline {
   refs::PresplitReport presplit;
   double build_seconds = 0;
   std::vector<std::pair<std::string, std::string>> echo;  ///< resolved options, builder and layout first
+  tree::BinaryTree tree;                                  ///< what the accel was made of
 };
 /// Builds with a progress bar; warns about excluded triangles; notes what it did. `split` as for build_tree.
 Result<Pipeline> run_pipeline(const Input& input, const PipelineOptions& options, const Session& session,
-                              std::vector<std::uint8_t>* split = nullptr);
+                              std::vector<std::uint32_t>* split = nullptr);
 
 /// The resolved options with builder, pre-split and layout in front: what reports echo.
 Result<std::vector<std::pair<std::string, std::string>>> echo_options(const builders::BuildOptions& options,

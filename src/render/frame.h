@@ -13,9 +13,9 @@ namespace boxwood::render {
 struct Frame {
   const Accel& accel;
   Camera camera;
-  std::span<const std::uint8_t> marked = {};  ///< by primitive id; empty but for Shade::subdivided
+  std::span<const std::uint32_t> numbers = {};  ///< by primitive id, for the shades that show them
 
-  bool is_marked(std::uint32_t primitive) const { return primitive < marked.size() && marked[primitive] != 0; }
+  std::uint32_t number(std::uint32_t primitive) const { return primitive < numbers.size() ? numbers[primitive] : 0; }
 };
 
 /// Pixels handled by one piece of parallel work.
@@ -48,14 +48,14 @@ void for_each_index(Executor& executor, std::size_t count, const F& f) {
 }
 
 // The shades. Each fills all pixels of an image that has the camera's size.
-/// Shade::normals and Shade::subdivided.
-Status shade_normals(const Frame& frame, Image& image);
+/// `shade` is Shade::normals or Shade::subdivided.
+Status shade_normals(const Frame& frame, Shade shade, Image& image);
 Status shade_ids(const Frame& frame, Image& image);
-/// Refuses a hit on a triangle that has no place in `groups`.
-Status shade_clusters(const Frame& frame, std::span<const std::uint32_t> groups, Image& image);
 Status shade_depth(const Frame& frame, Image& image);
 Status shade_occlusion(const Frame& frame, Image& image);
 /// `shade` is Shade::nodes or Shade::primitives.
 Status shade_heat(const Frame& frame, Shade shade, Image& image);
 
+/// `shade` is Shade::clusters or Shade::children.
+Status shade_groups(const Frame& frame, Shade shade, Image& image);
 }  // namespace boxwood::render

@@ -11,15 +11,20 @@ struct ShadeName {
   Shade shade;
   std::string_view name;
 };
-constexpr ShadeName kShades[] = {
-    {Shade::normals, "normals"},       {Shade::ao, "ao"},   {Shade::depth, "depth"},          {Shade::nodes, "nodes"},
-    {Shade::primitives, "primitives"}, {Shade::ids, "ids"}, {Shade::subdivided, "subdivided"}};
+constexpr ShadeName kShades[] = {{Shade::normals, "normals"},       {Shade::ao, "ao"},
+                                 {Shade::depth, "depth"},           {Shade::nodes, "nodes"},
+                                 {Shade::primitives, "primitives"}, {Shade::ids, "ids"},
+                                 {Shade::subdivided, "subdivided"}, {Shade::clusters, "clusters"},
+                                 {Shade::children, "children"}};
 
-Status draw(const Frame& frame, Shade shade, std::span<const std::uint32_t> groups, Image& image) {
+Status draw(const Frame& frame, Shade shade, Image& image) {
   switch (shade) {
     case Shade::normals:
     case Shade::subdivided:
-      return shade_normals(frame, image);
+      return shade_normals(frame, shade, image);
+    case Shade::clusters:
+    case Shade::children:
+      return shade_groups(frame, shade, image);
     case Shade::ao:
       return shade_occlusion(frame, image);
     case Shade::depth:
@@ -29,8 +34,6 @@ Status draw(const Frame& frame, Shade shade, std::span<const std::uint32_t> grou
       return shade_heat(frame, shade, image);
     case Shade::ids:
       return shade_ids(frame, image);
-    case Shade::clusters:
-      return shade_clusters(frame, groups, image);
   }
   return {ErrorCode::invalid_argument, "there is no shade number " + std::to_string(static_cast<int>(shade))};
 }
@@ -47,12 +50,12 @@ Result<Shade> find_shade(std::string_view name) {
 }
 
 Result<Image> render(const Accel& accel, const View& view, int width, int height, Shade shade,
-                     std::span<const std::uint8_t> marked) try {
+                     std::span<const std::uint32_t> numbers) try {
   auto camera = Camera::make(view, width, height);
   if (!camera) return camera.error();
-  const Frame frame{accel, *camera, shade == Shade::subdivided ? marked : std::span<const std::uint8_t>{}};
+  const Frame frame{accel, *camera, numbers};
   Image image{.width = width, .height = height, .rgb = std::vector<std::uint8_t>(3 * camera->pixel_count())};
-  if (auto drawn = draw(frame, shade, groups, image); !drawn) return drawn.error();
+  if (auto drawn = draw(frame, shade, image); !drawn) return drawn.error();
   return image;
 } catch (const std::bad_alloc&) {
   return {ErrorCode::out_of_memory,

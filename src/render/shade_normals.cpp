@@ -1,5 +1,5 @@
 // The shade `normals`: a lamp at the eye, softened, on a clay that is tinted by the normal's direction in the mesh's
-// axes. The shade `subdivided` is the same with the marked triangles in red.
+// axes. The shade `subdivided` is the same with the triangles that have a number in red.
 #include "render/backdrop.h"
 #include "render/color.h"
 #include "render/frame.h"
@@ -20,14 +20,15 @@ Color surface_color(const Ray& ray, Vec3 normal, bool marked) {
 
 }  // namespace
 
-Status shade_normals(const Frame& frame, Image& image) {
+Status shade_normals(const Frame& frame, Shade shade, Image& image) {
+  const bool shows_marks = shade == Shade::subdivided;
   return for_batches(frame, Detail::normals, [&](const PixelBatch& batch) -> Status {
     for_each_index(frame.accel.executor(), batch.size(), [&](std::size_t i) {
       const std::size_t pixel = batch.first_pixel + i;
       set_pixel(image, pixel,
-                to_srgb(batch.hits[i]
-                            ? surface_color(batch.rays[i], batch.normals[i], frame.is_marked(batch.hits[i].primitive))
-                            : backdrop(frame.camera, pixel)));
+                to_srgb(batch.hits[i] ? surface_color(batch.rays[i], batch.normals[i],
+                                                      shows_marks && frame.number(batch.hits[i].primitive) != 0)
+                                      : backdrop(frame.camera, pixel)));
     });
     return {};
   });

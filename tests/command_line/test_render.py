@@ -42,6 +42,18 @@ class Render(CommandLineTest):
                 pictures.add(pixels)
         self.assertEqual(len(pictures), 7)
 
+    def test_children_of_a_node(self):
+        pictures = set()
+        for node in ([], ["--node", "0"], ["--node", "1"], ["--node", "2"]):
+            report = self.report("render", SCENE, "-o", "p.png", "--size", "64x64", "--shade", "children", *node)
+            self.assertEqual(report["options"]["node"], int(node[1]) if node else 0)
+            pictures.add((self.folder / "p.png").read_bytes())
+        self.assertEqual(len(pictures), 3, "the default is node 0")
+        for arguments, message in ((["--shade", "children", "--node", "99999999"], "there is no node 99999999"),
+                                   (["--shade", "ids", "--node", "1"], "--node is for --shade children only"),
+                                   (["--shade", "blue"], "primitives, ids, children")):
+            self.refused("render", SCENE, "-o", "p.png", *arguments, says=[message])
+
     def test_the_printed_camera_repeats_the_picture(self):
         report = self.report("render", self.cube, "-o", "a.png", "--size", "40x30")
         self.report("render", self.cube, "-o", "b.png", "--size", "40x30", "--camera", report["camera"])

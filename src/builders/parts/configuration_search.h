@@ -13,6 +13,10 @@
 
 namespace boxwood::builders {
 
+/// Ranges of more references than this are searched by several threads: a search costs far more than the sweeps that
+/// kLargeRange is for.
+inline constexpr std::size_t kLargeSearch = 1 << 12;
+
 /// How configurations are priced, and which are allowed.
 struct ConfigurationPrice {
   float area_scale = 1;

@@ -67,7 +67,8 @@ SideCounts CountingTable::count(const PlaneBox& left, const PlaneBox& right, boo
   counts.both = inside(middle);
   counts.left = inside(left) - counts.both;
   counts.right = inside(right) - counts.both;
-  if (may_split) {
+  counts.covered = counts.left + counts.right + counts.both == all_;
+  if (may_split && !counts.covered) {
     for (int i = 0; i < 3; ++i) {
       // References inside both children on the other axes, and inside the two together on this one.
       if (middle.lower[i] > middle.upper[i]) continue;
@@ -76,8 +77,8 @@ SideCounts CountingTable::count(const PlaneBox& left, const PlaneBox& right, boo
       joined.upper[i] = std::max(left.upper[i], right.upper[i]);
       counts.split += inside(joined) - inside(both(joined, left)) - inside(both(joined, right)) + counts.both;
     }
+    counts.covered = counts.left + counts.right + counts.both + counts.split == all_;
   }
-  counts.covered = counts.left + counts.right + counts.both + counts.split == all_;
   return counts;
 }
 

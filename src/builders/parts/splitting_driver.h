@@ -37,11 +37,15 @@ struct SplittingRange {
   }
 };
 
+/// Ranges up to this size are finished by one thread each. Cutting makes references dear, so these are small.
+inline constexpr std::size_t kLargeSplittingRange = 1 << 12;
+
 template <class Finder>
 class SplittingDriver {
  public:
-  SplittingDriver(Finder& finder, const BuildContext& context)
-      : finder_(finder), executor_(context.executor), monitor_(context, kProgressSteps) {}
+  /// Ranges of more references than `large_range` are worked on by all threads.
+  SplittingDriver(Finder& finder, const BuildContext& context, std::size_t large_range = kLargeSplittingRange)
+      : finder_(finder), executor_(context.executor), monitor_(context, kProgressSteps), large_range_(large_range) {}
 
   /// Builds over the references, of which the tree may have `spare` more. An error when it was cancelled or the tree
   /// has more references than 32-bit numbers can count.
@@ -90,8 +94,6 @@ class SplittingDriver {
 
  private:
   static constexpr std::size_t kProgressSteps = 1000000;
-  /// Ranges up to this size are finished by one thread each. Cutting makes references dear, so these are small.
-  static constexpr std::size_t kOneThread = 1 << 12;
   /// Below this many ranges at once the threads share the work on each range, from here on the ranges.
   static constexpr std::size_t kManyRanges = 8;
   static constexpr std::uint32_t kSplittingDepthLimit = 96;
@@ -108,7 +110,7 @@ class SplittingDriver {
   std::vector<Children> split_round(std::vector<SplittingRange>& ranges) {
     std::vector<Children> children(ranges.size());
     const auto split = [&](std::size_t i, Executor& executor) {
-      if (ranges[i].size() > kOneThread)
+      if (ranges[i].size() > large_range_)
         children[i].split = split_or_leaf(ranges[i], executor, children[i].left, children[i].right);
     };
     if (ranges.size() < kManyRanges) {
@@ -229,6 +231,7 @@ class SplittingDriver {
   Finder& finder_;
   Executor& executor_;
   BuildMonitor monitor_;
+  std::size_t large_range_;
   std::vector<tree::Node> top_;
 };
 

@@ -30,17 +30,20 @@ inline constexpr std::uint32_t kDepthLimit = 96;
 template <class Finder>
 class TopDownDriver {
  public:
-  TopDownDriver(Finder& finder, std::size_t reference_count, const BuildContext& context)
+  /// Ranges of more references than `large_range` are worked on by all threads.
+  TopDownDriver(Finder& finder, std::size_t reference_count, const BuildContext& context,
+                std::size_t large_range = kLargeRange)
       : finder_(finder),
         executor_(context.executor),
         monitor_(context, reference_count),
+        large_range_(large_range),
         nodes_(2 * reference_count),
         ids_(reference_count) {}
 
   /// Fills nodes() and ids(). False when cancelled.
   bool run(const BuildRange& root) {
     std::vector<BuildRange> large, small;
-    (root.size() > kLargeRange ? large : small).push_back(root);
+    (root.size() > large_range_ ? large : small).push_back(root);
     while (!large.empty() && !monitor_.cancelled()) large = split_round(large, small);
     executor_.for_chunks(small.size(), 1, [&](std::size_t chunk, std::size_t, std::size_t) {
       finish(small[chunk]);
@@ -79,7 +82,7 @@ class TopDownDriver {
         continue;
       }
       for (const BuildRange& child : {children[i].left, children[i].right})
-        (child.size() > kLargeRange ? large : small).push_back(child);
+        (child.size() > large_range_ ? large : small).push_back(child);
     }
     return large;
   }
@@ -122,6 +125,7 @@ class TopDownDriver {
   Finder& finder_;
   Executor& executor_;
   BuildMonitor monitor_;
+  std::size_t large_range_;
   AlignedBuffer<tree::Node> nodes_;
   AlignedBuffer<std::uint32_t> ids_;
 };

@@ -103,7 +103,7 @@ class GenericFinder {
       return;
     }
     const std::span<const refs::Reference> all = range.references;
-    const std::size_t chunk = all.size() > kLargeRange ? kChunk : all.size();
+    const std::size_t chunk = all.size() > kLargeSearch ? kLargeSearch : all.size();
     struct Parts {
       std::vector<refs::Reference> left, right;
     };
@@ -173,7 +173,7 @@ class GenericFinder {
 
   void consider(const std::vector<Candidate>& candidates, const SplittingRange& range, const ConfigurationPrice& price,
                 Executor& executor, GenericSplit& best) const {
-    const std::size_t batch = range.size() > kLargeRange ? kBatch : 1;
+    const std::size_t batch = range.size() > kLargeSearch ? kBatch : 1;
     std::vector<std::size_t> chosen;
     std::vector<double> costs(batch);
     for (std::size_t next = 0, measured = 0; next < candidates.size() && measured < kMostMeasured;) {
@@ -218,7 +218,7 @@ Result<tree::BinaryTree> build_generic(refs::ReferenceSet&& set, const OptionVal
   const std::shared_ptr<const refs::Primitives> primitives = set.primitives;
   const std::uint64_t spare = spare_references(set.references.size(), options.number(kGrowth));
   GenericFinder finder(set, options);
-  SplittingDriver<GenericFinder> driver(finder, context);
+  SplittingDriver<GenericFinder> driver(finder, context, kLargeSearch);
   return driver.run(std::move(set), spare);
 }
 

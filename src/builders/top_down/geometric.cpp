@@ -35,7 +35,7 @@ constexpr OptionSpec kOptions[] = {
      .description = "up to so many references of a node, their own sides are the planes (Popov et al. 2009, 3.1)",
      .default_value = 0,
      .lowest = 0,
-     .highest = 12,
+     .highest = 8,
      .integer = true},
     {.key = kCost,
      .description = "what partitions are compared by: plain = area times count; recursive = trees of spatial medians",
@@ -190,7 +190,7 @@ Result<tree::BinaryTree> build_geometric(refs::ReferenceSet&& set, const OptionV
   AlignedBuffer<std::uint32_t> ids;
   {
     GeometricFinder finder(std::move(set), options, context.executor);
-    TopDownDriver<GeometricFinder> driver(finder, count, context);
+    TopDownDriver<GeometricFinder> driver(finder, count, context, kLargeSearch);
     if (!driver.run(finder.root(context.executor))) return cancelled_error();
     nodes = std::move(driver.nodes());
     ids = std::move(driver.ids());

@@ -16,6 +16,14 @@ bool equal_bits(const tree::BinaryTree& a, const tree::BinaryTree& b) {
 
 class BuilderDeterminism : public ::testing::TestWithParam<std::size_t> {
  protected:
+  /// How many boxes to build over: `wanted`, but for builders that say they are slower than n log n only `few`. These
+  /// work in parallel on ranges of more than 4096 references already (kLargeSearch).
+  static std::size_t count(std::size_t wanted, std::size_t few) {
+    const std::string_view cost_class = builders::registry()[GetParam()].cost_class;
+    const bool is_quick = cost_class == "O(n)" || cost_class == "O(n log n)";
+    return is_quick ? wanted : few;
+  }
+
   void check(const testing::Boxes& boxes, const std::map<std::string, std::string>& settings = {}) {
     const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 8);
     const char* const id = builders::registry()[GetParam()].id;
@@ -45,20 +53,20 @@ INSTANTIATE_TEST_SUITE_P(All, BuilderDeterminism, ::testing::Range<std::size_t>(
                          builder_name);
 
 TEST_P(BuilderDeterminism, Soup) {
-  check(testing::soup(200000, 21));
+  check(testing::soup(count(200000, 6000), 21));
 }
 
 TEST_P(BuilderDeterminism, Surface) {
-  check(testing::height_field(320));
+  check(testing::height_field(count(320, 75)));
 }
 
 TEST_P(BuilderDeterminism, EqualBoxes) {
-  check(testing::Boxes(100000, Box{{1, 2, 3}, {2, 3, 4}}));
+  check(testing::Boxes(count(100000, 6000), Box{{1, 2, 3}, {2, 3, 4}}));
 }
 
 TEST_P(BuilderDeterminism, FewCentroidsManyTies) {
   testing::Random random(5);
-  check(testing::make_boxes(100000, [&](std::size_t) {
+  check(testing::make_boxes(count(100000, 6000), [&](std::size_t) {
     const auto cell = [&] { return std::floor(4 * random()); };
     const Vec3 p{cell(), cell(), cell()};
     return Box{p, p + Vec3{1, 1, 1}};
@@ -67,10 +75,10 @@ TEST_P(BuilderDeterminism, FewCentroidsManyTies) {
 
 TEST_P(BuilderDeterminism, OneBigClusterAndAFewOutliers) {
   // Splits that peel off a handful of references keep ranges above the size that is worked on in parallel.
-  testing::Boxes boxes = testing::soup(100000, 22, 1e-3f);
+  testing::Boxes boxes = testing::soup(count(100000, 6000), 22, 1e-3f);
   for (int i = 0; i < 40; ++i) {
     const float x = std::ldexp(1.0f, i);
-    boxes[static_cast<std::size_t>(i) * 1000] = {{x, x, x}, {1.5f * x, x, x}};
+    boxes[static_cast<std::size_t>(i) * (boxes.size() / 100)] = {{x, x, x}, {1.5f * x, x, x}};
   }
   check(boxes);
 }

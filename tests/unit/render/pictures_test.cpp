@@ -12,8 +12,8 @@
 namespace boxwood::render {
 namespace {
 
-constexpr Shade kAllShades[] = {Shade::normals,    Shade::ao,  Shade::depth,     Shade::nodes,
-                                Shade::primitives, Shade::ids, Shade::subdivided};
+constexpr Shade kAllShades[] = {Shade::normals, Shade::ao,         Shade::depth,    Shade::nodes,   Shade::primitives,
+                                Shade::ids,     Shade::subdivided, Shade::clusters, Shade::children};
 
 Rgb pixel(const Image& image, int x, int y) {
   const std::uint8_t* p = &image.rgb[3 * (static_cast<std::size_t>(y) * image.width + x)];
@@ -41,19 +41,18 @@ std::set<Rgb> colors(const Image& image) {
 }
 
 TEST(FindShade, KnowsAllNamesAndListsThemForAnUnknownOne) {
-  const char* names[] = {"normals", "ao", "depth", "nodes", "primitives", "ids", "subdivided"};
+  const char* names[] = {"normals", "ao", "depth", "nodes", "primitives", "ids", "subdivided", "clusters", "children"};
   for (std::size_t i = 0; i < std::size(kAllShades); ++i) {
     const auto shade = find_shade(names[i]);
     ASSERT_TRUE(shade);
     EXPECT_EQ(*shade, kAllShades[i]);
   }
-  ASSERT_TRUE(find_shade("clusters"));
-  EXPECT_EQ(*find_shade("clusters"), Shade::clusters);
   for (const char* wrong : {"", "Normals", "heat", "ao "}) {
     const auto shade = find_shade(wrong);
     ASSERT_FALSE(shade);
     EXPECT_EQ(shade.error().code, ErrorCode::unknown_name);
-    EXPECT_NE(shade.error().message.find("normals, ao, depth, nodes, primitives, ids, subdivided"), std::string::npos);
+    EXPECT_NE(shade.error().message.find("normals, ao, depth, nodes, primitives, ids, subdivided, clusters, children"),
+              std::string::npos);
     EXPECT_NE(shade.error().message.find('"' + std::string(wrong) + '"'), std::string::npos);
   }
 }
@@ -64,7 +63,7 @@ TEST(Render, MarkedTrianglesAreRedAndOnlyThose) {
   const auto unmarked = render(accel, kFromAbove, 40, 40, Shade::subdivided);
   ASSERT_TRUE(unmarked);
   EXPECT_EQ(unmarked->rgb, plain.rgb);
-  const std::vector<std::uint8_t> marks = {0, 1};
+  const std::vector<std::uint32_t> marks = {0, 1};
   EXPECT_EQ(render(accel, kFromAbove, 40, 40, Shade::normals, marks)->rgb, plain.rgb);
   const auto image = render(accel, kFromAbove, 40, 40, Shade::subdivided, marks);
   ASSERT_TRUE(image);
@@ -170,7 +169,7 @@ TEST(Render, IdsAreOneColourPerTriangle) {
   EXPECT_EQ(distinct.size(), color_of.size());
 }
 
-TEST(Render, ClustersAreOneColourPerGroupAndNeedANumberForEachTriangle) {
+TEST(Render, ClustersAreOneColourPerNumber) {
   const Accel accel = build(square(1));
   const int size = 31;
   const auto difference = [&](std::vector<std::uint32_t> groups) {
@@ -184,11 +183,6 @@ TEST(Render, ClustersAreOneColourPerGroupAndNeedANumberForEachTriangle) {
   };
   EXPECT_LE(difference({7, 7}), 3);  // rounding
   EXPECT_GT(difference({7, 8}), 20);
-  for (const std::vector<std::uint32_t>& groups : {std::vector<std::uint32_t>{}, {1}}) {
-    const auto refused = render(accel, kFromAbove, size, size, Shade::clusters, groups);
-    ASSERT_FALSE(refused);
-    EXPECT_NE(refused.error().message.find("number for each triangle"), std::string::npos);
-  }
 }
 
 TEST(Render, NormalsAreLightestWhereTheSurfaceFacesTheEyeAndSeeBothSides) {
@@ -295,5 +289,17 @@ TEST(Render, SameBitsOnEveryExecutor) {
   }
 }
 
+TEST(Render, ChildrenHaveFourColours) {
+  const Accel accel = build(square(1));
+  std::set<std::set<Rgb>> pictures;
+  for (const std::uint32_t number : {0u, 1u, 2u, 3u})
+    pictures.insert(colors(*render(accel, kFromAbove, 24, 24, Shade::children, std::vector(2, number))));
+  EXPECT_EQ(pictures.size(), 4u);
+  const auto parted = render(accel, kFromAbove, 24, 24, Shade::children, std::vector{1u, 2u});
+  EXPECT_EQ(pictures.count(colors(*parted)), 0u);
+  // Triangles without a number are below neither child.
+  const auto none = render(accel, kFromAbove, 24, 24, Shade::children, std::vector(2, 0u));
+  EXPECT_EQ(render(accel, kFromAbove, 24, 24, Shade::children)->rgb, none->rgb);
+}
 }  // namespace
 }  // namespace boxwood::render
