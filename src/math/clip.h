@@ -23,6 +23,8 @@ class ConvexPolygon {
   void clip(const Box& box);
   /// A box in single precision that holds the exact polygon; empty when there is no corner.
   Box bounds() const;
+  /// Of the polygon in its plane; zero when it has no corner or has shrunk to a line or point.
+  double area() const;
 
  private:
   using Point = std::array<double, 3>;
