@@ -16,6 +16,7 @@ void add_info_command(CLI::App& program, Run& run);
 void add_build_command(CLI::App& program, Run& run);
 void add_trace_command(CLI::App& program, Run& run);
 void add_bench_command(CLI::App& program, Run& run);
+void add_correlate_command(CLI::App& program, Run& run);
 void add_render_command(CLI::App& program, Run& run);
 
 }  // namespace boxwood::program

@@ -1,9 +1,10 @@
 // End-point overlap (Aila, Karras and Laine 2013, bib key aila2013): the area of the surface inside boxes it does not
 // belong to, weighted by what visiting the box costs. Each triangle goes down the tree on its own: where its subtree
 // has it, to the children its box meets; elsewhere it is clipped by the node's box, in double precision and anew from
-// its corners, so nothing accumulates. A part without area has no descendants with area, so the walk ends there. Ours
-// differs: the exact sum where the authors sample, or samples in proportion to area with a stated error.
-// O(references * depth + pairs that overlap * 1); sums by chunks of triangles, joined in order.
+// its corners, so nothing accumulates. A part without area has no descendants with area, so the walk ends there. The
+// sum is exact, or taken over triangles sampled in proportion to their areas, with the standard error of that.
+// O(references * depth + pairs of a triangle and a foreign box it reaches into); one number per triangle, added up in
+// order, so the bits do not depend on the threads.
 #include <algorithm>
 #include <cmath>
 #include <vector>
