@@ -8,13 +8,15 @@
 // ray of an any-hit query that is done: no traversal needs to know of either.
 #pragma once
 
-#include <hwy/highway.h>
-
 #include <memory>
 #include <vector>
 
 #include "queries/kernels/kernels.h"
 #include "queries/kernels/linear_steps.h"
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
 
 namespace boxwood::queries {
 
@@ -121,24 +123,21 @@ class Packet {
   /// The box test of rays `first` to `first + 3`, one bit each; `first` is a multiple of four. Each lane does what
   /// box_test does: which plane is entered first follows from the products, and the sign of the reciprocal.
   Mask meets_four(std::size_t first, const Box& box) const {
-    namespace hn = hwy::HWY_NAMESPACE;
-    const hn::CappedTag<float, kGroup> d;
-    Mask mask = 0;
-    for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(d)) {
-      const std::size_t i = first + lane;
-      auto near = hn::Load(d, plane(kTmin) + i), far = hn::Load(d, plane(kLimit) + i);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto reciprocal = hn::Load(d, plane(kReciprocal + axis) + i);
-        const auto a = hn::Mul(hn::Set(d, box.lower[static_cast<int>(axis)]), reciprocal);
-        const auto b = hn::Mul(hn::Set(d, box.upper[static_cast<int>(axis)]), reciprocal);
-        near = hn::Max(near, hn::Add(hn::Min(a, b), hn::Load(d, plane(kEntry + axis) + i)));
-        far = hn::Min(far, hn::Add(hn::Max(a, b), hn::Load(d, plane(kExit + axis) + i)));
-      }
-      std::uint8_t bits[8] = {};
-      hn::StoreMaskBits(d, hn::Le(near, far), bits);
-      mask |= (bits[0] & ((1u << hn::Lanes(d)) - 1)) << lane;
+#if defined(__SSE2__)
+    __m128 near = _mm_load_ps(plane(kTmin) + first), far = _mm_load_ps(plane(kLimit) + first);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const __m128 reciprocal = _mm_load_ps(plane(kReciprocal + axis) + first);
+      const __m128 a = _mm_mul_ps(_mm_set1_ps(box.lower[static_cast<int>(axis)]), reciprocal);
+      const __m128 b = _mm_mul_ps(_mm_set1_ps(box.upper[static_cast<int>(axis)]), reciprocal);
+      near = _mm_max_ps(near, _mm_add_ps(_mm_min_ps(a, b), _mm_load_ps(plane(kEntry + axis) + first)));
+      far = _mm_min_ps(far, _mm_add_ps(_mm_max_ps(a, b), _mm_load_ps(plane(kExit + axis) + first)));
     }
+    return static_cast<Mask>(_mm_movemask_ps(_mm_cmple_ps(near, far)));
+#else
+    Mask mask = 0;
+    for (std::size_t lane = 0; lane < kGroup; ++lane) mask |= static_cast<Mask>(meets(first + lane, box)) << lane;
     return mask;
+#endif
   }
 
   /// Is the second child of an inner node entered first, by the direction of this ray?
@@ -171,8 +170,12 @@ class Packet {
  private:
   enum Plane : std::size_t { kReciprocal = 0, kEntry = 3, kExit = 6, kTmin = 9, kLimit = 10, kPlanes = 11 };
 
-  float* plane(std::size_t p) { return planes_.data() + p * bests_.size(); }
-  const float* plane(std::size_t p) const { return planes_.data() + p * bests_.size(); }
+  float* plane(std::size_t p) {
+    return planes_.data() + p * bests_.size();
+  }
+  const float* plane(std::size_t p) const {
+    return planes_.data() + p * bests_.size();
+  }
 
   const LinearNode* nodes_;
   const LinearTriangle* triangles_;
