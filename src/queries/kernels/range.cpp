@@ -1,4 +1,4 @@
-// Packets that keep a range of rays (Wald, Boulos and Shirley 2007, bib key wald2007; the cull by interval arithmetic
+// Packets that keep a range of rays (Wald, Boulos and Shirley 2007, bib key waldboulos2007; the cull by interval arithmetic
 // from Boulos et al. 2006, boulos2006). At each node the packet as a whole is tested first, by bounds of all its rays;
 // then the first ray that meets the box is looked for from the front. Rays before it are out below this node, those
 // behind it are taken to be in without a test until a leaf, where each is asked. Ours differs: four rays are tested at
