@@ -32,6 +32,7 @@ std::shared_ptr<BuildFigures> make_figures(const BenchPlan& plan) {
 void describe(BuildFigures& figures, const tree::BinaryTree& tree, const Accel& accel, const tree::CostModel& cost) {
   const tree::Statistics shape = tree::statistics(tree);
   figures.surface_area_cost = metrics::surface_area_cost(tree, cost);
+  figures.cost = cost;
   figures.nodes = shape.nodes;
   figures.leaves = shape.leaves;
   figures.references = shape.references;
@@ -59,6 +60,9 @@ Status build_own(Own& own, const BenchPlan& plan, const Input& input, std::size_
     figures.milliseconds[thread_index].push_back(1e3 * (built->seconds() + encoded->encode_seconds));
     if (is_first) {
       describe(figures, built->tree, encoded->accel, resolved->cost());
+      if (plan.measures_trees)
+        figures.measures = i > 0 ? own.figures[0]->measures
+                                 : measure_tree(built->tree, input.mesh, resolved->cost(), 0, *executors.chosen);
       own.accels.push_back(std::make_shared<const Accel>(std::move(encoded->accel)));
     }
   }
@@ -85,15 +89,28 @@ std::vector<Contestant> list_contestants(const BenchPlan& plan, const std::vecto
   for (const Own& o : own)
     for (std::size_t i = 0; i < plan.layouts.size(); ++i)
       for (const queries::Mode mode : plan.modes)
-        contestants.push_back(
-            {o.options->builder, o.presplit->text(), plan.layouts[i], mode, o.figures[i], o.accels[i], nullptr});
+        for (const queries::TraversalOptions& traversal : plan.traversals)
+          if (queries::check_traversal(o.accels[i]->layout().id, traversal))
+            contestants.push_back({o.options->builder, o.presplit->text(), plan.layouts[i], mode, o.figures[i],
+                                   o.accels[i], nullptr, traversal});
   for (const Rival& r : rivals)
     contestants.push_back(
-        {std::string("embree:") + rivals::name(r.quality), "", "embree", r.mode, r.figures, nullptr, r.embree});
+        {std::string("embree:") + rivals::name(r.quality), "", "embree", r.mode, r.figures, nullptr, r.embree, {}});
   return contestants;
 }
 
 }  // namespace
+
+std::size_t Contestant::packet_size() const {
+  switch (traversal.traversal) {
+    case queries::Traversal::single:
+      return 1;
+    case queries::Traversal::packet4:
+      return 4;
+    default:
+      return traversal.packet_size;
+  }
+}
 
 BenchExecutors make_executors(const BenchPlan& plan, const Session& session) {
   BenchExecutors executors;

@@ -34,8 +34,8 @@ Result<double> trace(const Contestant& contestant, const RaySet& set, BenchExecu
     else
       contestant.embree->closest_hits(set.rays, answers.hits, *executors.chosen);
   } else {
-    status = any ? contestant.accel->any_hits(set.rays, answers.occluded, contestant.mode)
-                 : contestant.accel->closest_hits(set.rays, answers.hits, {}, contestant.mode);
+    status = any ? contestant.accel->any_hits(set.rays, answers.occluded, contestant.mode, contestant.traversal)
+                 : contestant.accel->closest_hits(set.rays, answers.hits, {}, contestant.mode, contestant.traversal);
   }
   const double seconds = now() - start;
   if (!status) return status.error();
@@ -53,9 +53,9 @@ Result<queries::Counts> count_work(const Contestant& contestant, const RaySet& s
     const auto rays = std::span(set.rays).subspan(begin, count);
     const auto counts = std::span(per_ray).first(count);
     const Status status = any ? contestant.accel->any_hits_counted(rays, std::span(answers.occluded).first(count),
-                                                                   counts, contestant.mode)
+                                                                   counts, contestant.mode, contestant.traversal)
                               : contestant.accel->closest_hits_counted(rays, std::span(answers.hits).first(count),
-                                                                       counts, contestant.mode);
+                                                                       counts, contestant.mode, contestant.traversal);
     if (!status) return status.error();
     for (const queries::Counts& c : counts) total += c;
   }
@@ -99,6 +99,7 @@ Result<Row> prepare(const Contestant& contestant, const RaySet& set, BenchExecut
     const auto counts = count_work(contestant, set);
     if (!counts) return counts.error();
     row.nodes_per_ray = static_cast<double>(counts->nodes) / static_cast<double>(row.rays);
+    row.packet_nodes_per_ray = static_cast<double>(counts->packet_nodes) / static_cast<double>(row.rays);
     row.primitives_per_ray = static_cast<double>(counts->primitives) / static_cast<double>(row.rays);
   }
   const auto warm_up = trace(contestant, set, executors, answers);
@@ -141,6 +142,9 @@ Result<std::vector<RaySet>> make_ray_sets(const BenchPlan& plan, const Input& in
         break;
       case RayKind::occlusion:
         set.rays = render::occlusion_rays(accel, *primary, plan.seed);
+        break;
+      case RayKind::lines:
+        set.rays = render::line_rays(input.bounds, plan.random_rays, plan.seed);
         break;
     }
     set.hash = render::hash(set.rays);

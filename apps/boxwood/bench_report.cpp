@@ -26,22 +26,37 @@ bool differs_only_in_mode(const Contestant& a, const Contestant& b) {
   return a.build == b.build;
 }
 
+std::string traversal_text(const Contestant& c) {
+  const std::string word = queries::name(c.traversal.traversal);
+  const bool has_size = c.packet_size() > 4;
+  return has_size ? fmt::format("{} of {}", word, c.packet_size()) : word;
+}
+
 /// The columns that tell contestants apart, leaving out what is the same for all.
 struct Names {
-  bool presplit, layout, mode;
+  bool presplit, layout, mode, traversal, terminating;
   explicit Names(const BenchPlan& plan)
-      : presplit(plan.presplits.size() > 1), layout(plan.layouts.size() > 1), mode(plan.modes.size() > 1) {}
+      : presplit(plan.presplits.size() > 1),
+        layout(plan.layouts.size() > 1),
+        mode(plan.modes.size() > 1),
+        traversal(plan.traversals.back().traversal != queries::Traversal::single ||
+                  plan.traversals.front().traversal != queries::Traversal::single),
+        terminating(!plan.traversals.back().terminating) {}
   void columns(Table& table) const {
     table.column("builder", Align::left);
     if (presplit) table.column("pre-split", Align::left);
     if (layout) table.column("layout", Align::left);
     if (mode) table.column("mode", Align::left);
+    if (traversal) table.column("traversal", Align::left);
+    if (terminating) table.column("hits end rays", Align::left);
   }
   std::vector<std::string> cells(const Contestant& c) const {
     std::vector<std::string> cells{c.builder};
     if (presplit) cells.push_back(c.is_rival() ? "-" : c.presplit);
     if (layout) cells.push_back(c.is_rival() ? "-" : c.layout);
     if (mode) cells.push_back(queries::name(c.mode));
+    if (traversal) cells.push_back(c.is_rival() ? "-" : traversal_text(c));
+    if (terminating) cells.push_back(c.traversal.terminating ? "yes" : "no");
     return cells;
   }
 };
@@ -84,7 +99,9 @@ std::string kind_table(const BenchPlan& plan, const BenchResult& result, const R
   const bool has_rivals = !plan.rivals.empty();
   Table table;
   names.columns(table);
-  for (const char* head : {"nodes/ray", "tris/ray", "hits"}) table.column(head);
+  table.column("nodes/ray");
+  if (names.traversal) table.column("packet nodes/ray");
+  for (const char* head : {"tris/ray", "hits"}) table.column(head);
   for (const int threads : plan.thread_counts) {
     const std::string group = "Mrays/s, " + thread_word(threads);
     for (const char* head : {"median", "min", "max"}) table.column(head, Align::right, group);
@@ -97,6 +114,7 @@ std::string kind_table(const BenchPlan& plan, const BenchResult& result, const R
     if (first.kind != set.kind || first.thread_index != 0) continue;
     std::vector<std::string> cells = names.cells(*first.contestant);
     cells.push_back(optional_text(first.nodes_per_ray, 2));
+    if (names.traversal) cells.push_back(optional_text(first.packet_nodes_per_ray, 2));
     cells.push_back(optional_text(first.primitives_per_ray, 2));
     cells.push_back(with_thousands(first.hits));
     for (std::size_t t = 0; t < plan.thread_counts.size(); ++t) {
@@ -186,6 +204,9 @@ Json rows_json(const BenchPlan& plan, const BenchResult& result) {
     json["presplit"] = c.is_rival() ? Json() : Json(c.presplit);
     json["layout"] = c.layout;
     json["mode"] = queries::name(c.mode);
+    json["traversal"] = c.is_rival() ? Json() : Json(queries::name(c.traversal.traversal));
+    json["packet_size"] = ours(c.packet_size());
+    json["terminating"] = c.traversal.terminating;
     json["rays"] = name(row.kind);
     json["ray_count"] = row.rays;
     json["ray_hash"] = hash_text(set->hash);
@@ -195,7 +216,9 @@ Json rows_json(const BenchPlan& plan, const BenchResult& result) {
     json["build_ms_max"] = build.highest;
     json["surface_area_cost"] = optional_json(c.build->surface_area_cost);
     json["nodes_per_ray"] = optional_json(row.nodes_per_ray);
+    json["packet_nodes_per_ray"] = optional_json(row.packet_nodes_per_ray);
     json["primitives_per_ray"] = optional_json(row.primitives_per_ray);
+    if (c.build->measures) json.update(measures_json(*c.build->measures));
     json["bytes"] = c.build->bytes;
     json["nodes"] = ours(c.build->nodes);
     json["references"] = ours(c.build->references);

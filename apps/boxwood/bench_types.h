@@ -12,6 +12,7 @@
 #include "embree/embree_rival.h"
 #include "input.h"
 #include "session.h"
+#include "tree_measures.h"
 
 namespace boxwood::program {
 
@@ -21,7 +22,7 @@ struct Spread {
 };
 Spread spread_of(std::vector<double> values);
 
-enum class RayKind { primary, random, diffuse, occlusion };
+enum class RayKind { primary, random, diffuse, occlusion, lines };
 const char* name(RayKind kind);
 /// Occlusion rays ask for any hit, all others for the closest.
 inline bool asks_any(RayKind kind) {
@@ -38,6 +39,7 @@ struct BenchPlan {
   std::vector<refs::Presplit> presplits;  ///< each before every builder
   std::vector<std::string> layouts;
   std::vector<queries::Mode> modes;
+  std::vector<queries::TraversalOptions> traversals;  ///< each for the layouts that have it; terminating ones first
   std::vector<RayKind> kinds;
   std::vector<RivalChoice> rivals;
   std::string rival_version;  ///< "Embree 3.13.5"; empty without rivals
@@ -46,6 +48,7 @@ struct BenchPlan {
   std::size_t random_rays = 0;
   std::uint64_t seed = 1;
   int repeat = 3;
+  bool measures_trees = false;     ///< fill in BuildFigures::measures
   std::vector<int> thread_counts;  ///< 1, and all when that is more
 };
 
@@ -75,6 +78,8 @@ struct BuildFigures {
   std::optional<double> surface_area_cost;
   std::size_t nodes = 0, leaves = 0, references = 0, max_depth = 0, max_leaf = 0;
   std::uint64_t hash = 0;
+  tree::CostModel cost;  ///< that surface_area_cost is in
+  std::optional<TreeMeasures> measures;
 };
 
 /// One thing that traces: ours (accel) or a rival's (embree).
@@ -84,7 +89,10 @@ struct Contestant {
   std::shared_ptr<BuildFigures> build;
   std::shared_ptr<const Accel> accel;
   std::shared_ptr<const rivals::EmbreeRival> embree;
+  queries::TraversalOptions traversal;
 
+  /// Rays that go through the tree together.
+  std::size_t packet_size() const;
   bool is_rival() const { return embree != nullptr; }
 };
 
@@ -101,7 +109,7 @@ struct Row {
   std::size_t thread_index = 0;  ///< into the plan's thread counts
   std::size_t rays = 0, hits = 0;
   Spread mrays;
-  std::optional<double> nodes_per_ray, primitives_per_ray;
+  std::optional<double> nodes_per_ray, packet_nodes_per_ray, primitives_per_ray;
   std::size_t disagreements = 0;
   std::string first_disagreement;
   std::optional<double> ratio;  ///< Mrays/s over that of the first rival of the same mode

@@ -1,5 +1,6 @@
 // boxwood build: build, validate, measure.
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "boxwood/layouts.h"
@@ -11,6 +12,7 @@
 #include "progress.h"
 #include "session.h"
 #include "text.h"
+#include "tree_measures.h"
 
 namespace boxwood::program {
 namespace {
@@ -20,7 +22,8 @@ struct Options {
   PipelineOptions pipeline;
   InputOptions input_options;
   std::string input;
-  bool skip_validation = false;
+  bool skip_validation = false, measures = false;
+  std::size_t overlap_samples = 0;
 };
 
 /// All that is reported of one build.
@@ -31,6 +34,8 @@ struct Outcome {
   std::string isa;
   tree::Statistics statistics;
   double cost = 0;
+  std::optional<TreeMeasures> measures;
+  double measure_seconds = 0;
   Status valid;
 
   double build_seconds() const { return built.seconds() + encode_seconds; }
@@ -71,6 +76,12 @@ Result<Outcome> build_and_measure(const Options& options, const refs::Presplit& 
   const auto resolved = builders::resolve_options(build_options.builder, build_options.settings);
   if (!resolved) return resolved.error();
   outcome.cost = metrics::surface_area_cost(tree, resolved->cost());
+  if (options.measures) {
+    progress.label("measuring the tree");
+    const double start = now();
+    outcome.measures = measure_tree(tree, input.mesh, resolved->cost(), options.overlap_samples, *session.executor());
+    outcome.measure_seconds = now() - start;
+  }
   if (!options.skip_validation) {
     progress.label("validating");
     const double start = now();
@@ -123,6 +134,10 @@ Json build_json(const Options& options, const Session& session, const Input& inp
   report["average_leaf_depth"] = shape.average_leaf_depth;
   report["leaf_histogram"] = shape.leaf_histogram;
   report["layout_nodes"] = outcome.layout_nodes;
+  if (outcome.measures) {
+    report.update(measures_json(*outcome.measures));
+    report["measure_ms"] = 1e3 * outcome.measure_seconds;
+  }
   report["bytes"] = outcome.bytes;
   report["tree_bytes"] = outcome.built.tree.bytes();
   report["notes"] = Json::object();
@@ -147,6 +162,19 @@ void print_presplit(const Line& line, const refs::PresplitReport& presplit) {
                        presplit.worst_factor, presplit.t > 0 ? fmt::format("; t = {}", presplit.t) : ""));
 }
 
+void print_measures(const Session& session, const Outcome& outcome) {
+  const TreeMeasures& m = *outcome.measures;
+  const auto line = [&](const char* key, const std::string& value) { session.result("  {:<16} {}\n", key, value); };
+  const auto text = [](const metrics::Estimate& e) {
+    return e.error > 0 ? fmt::format("{:.4f} +- {:.4f}", e.value, e.error) : fmt::format("{:.4f}", e.value);
+  };
+  line("EPO", fmt::format("{} (end-point overlap)", text(m.end_point_overlap)));
+  line("LCV", fmt::format("{} (leaf count variability over random lines)", text(m.leaf_count_variability)));
+  line("sibling overlap",
+       fmt::format("{:.4f} of the area, {:.4f} of the volume", m.sibling_overlap.area, m.sibling_overlap.volume));
+  line("per triangle", fmt::format("{:.4f} references", m.references_per_primitive));
+}
+
 void print_build(const Options& options, const Session& session, const Outcome& outcome) {
   const auto line = [&](const char* key, const std::string& value) { session.result("  {:<16} {}\n", key, value); };
   const tree::Statistics& shape = outcome.statistics;
@@ -163,6 +191,7 @@ void print_build(const Options& options, const Session& session, const Outcome& 
   line("references", with_thousands(shape.references));
   line("depth", fmt::format("at most {}, leaves at {:.1f} on average", shape.max_depth, shape.average_leaf_depth));
   line("leaf size", fmt::format("at most {}, {:.2f} on average", shape.max_leaf, shape.average_leaf));
+  if (outcome.measures) print_measures(session, outcome);
   line("memory", fmt::format("{:.1f} MiB in {} {} nodes; peak of the process {:.0f} MiB",
                              static_cast<double>(outcome.bytes) / (1 << 20), with_thousands(outcome.layout_nodes),
                              options.pipeline.layout, static_cast<double>(peak_memory_bytes()) / (1 << 20)));
@@ -205,10 +234,20 @@ void add_build_command(CLI::App& program, Run& run) {
   options->input_options.add_to(command);
   options->pipeline.add_to(command);
   command.add_flag("--no-validate", options->skip_validation, "Do not check the tree and its layout");
+  command.add_flag("--metrics", options->measures,
+                   "Also end-point overlap, leaf count variability, sibling overlap, references per triangle");
+  command
+      .add_option("--overlap-samples", options->overlap_samples,
+                  "Triangles to sample for end-point overlap; 0 = all of them, exactly (with --metrics)")
+      ->check(CLI::Range(std::size_t{0}, std::size_t{1} << 28).description(""))
+      ->type_name("N")
+      ->needs("--metrics")
+      ->capture_default_str();
   options->common.add_to(command);
   command.footer(
       "\nExamples:\n"
       "  boxwood build bunny.ply\n"
+      "  boxwood build bunny.ply --metrics\n"
       "  boxwood build bunny.ply --builder sweep-sah --set cost.traversal=2 --set cost.intersection=3\n"
       "  boxwood build scene:city,triangles=2000000 --builder hlbvh --layout wide4 --json report.json");
   command.callback([options, &run] { run = [options] { return run_build(*options); }; });

@@ -52,16 +52,20 @@ class Accel {
   bool any_hit(const Ray& ray, queries::Mode mode = queries::Mode::robust) const;
 
   /// Batches, in parallel on the executor given at build. The spans must be equally long (else invalid_argument, and
-  /// nothing is written); `normals` may be empty.
+  /// nothing is written); `normals` may be empty. Traversals other than the default give the same hits; errors: a
+  /// layout that has not got the one asked for, a packet size out of range.
   Status closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<Vec3> normals = {},
-                      queries::Mode mode = queries::Mode::robust) const;
+                      queries::Mode mode = queries::Mode::robust,
+                      const queries::TraversalOptions& traversal = {}) const;
   Status any_hits(std::span<const Ray> rays, std::span<std::uint8_t> occluded,
-                  queries::Mode mode = queries::Mode::robust) const;
+                  queries::Mode mode = queries::Mode::robust, const queries::TraversalOptions& traversal = {}) const;
   /// The same, counting the work of each ray (slower; the traversal is the same code).
   Status closest_hits_counted(std::span<const Ray> rays, std::span<Hit> hits, std::span<queries::Counts> per_ray,
-                              queries::Mode mode = queries::Mode::robust) const;
+                              queries::Mode mode = queries::Mode::robust,
+                              const queries::TraversalOptions& traversal = {}) const;
   Status any_hits_counted(std::span<const Ray> rays, std::span<std::uint8_t> occluded,
-                          std::span<queries::Counts> per_ray, queries::Mode mode = queries::Mode::robust) const;
+                          std::span<queries::Counts> per_ray, queries::Mode mode = queries::Mode::robust,
+                          const queries::TraversalOptions& traversal = {}) const;
 
   Box bounds() const;         ///< of all triangles in it
   std::size_t bytes() const;  ///< memory held, nodes and triangles

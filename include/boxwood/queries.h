@@ -36,12 +36,32 @@ enum class Mode { robust, fast };
 Result<Mode> find_mode(std::string_view name);
 const char* name(Mode mode);
 
+/// How rays go through a tree. `single`: one by one. `packet4`: four at a time, a mask saying which are active.
+/// `range`: a packet goes where its first active ray goes, the rays before that one being inactive. `partition`: a
+/// packet keeps the numbers of its active rays in front. Only the layout `linear` has packets. All give the same hits.
+enum class Traversal { single, packet4, range, partition };
+Result<Traversal> find_traversal(std::string_view name);
+const char* name(Traversal traversal);
+
+struct TraversalOptions {
+  Traversal traversal = Traversal::single;
+  /// Rays in a packet of `range` and `partition`, which take neighbours in the array: 16 to 1024.
+  std::uint32_t packet_size = 256;
+  /// False: hits are found as ever but neither shorten a ray nor end it, so that the counts are those the surface area
+  /// cost assumes. Only for the layout `linear`.
+  bool terminating = true;
+
+  bool is_default() const { return traversal == Traversal::single && terminating; }
+};
+
 /// Work done by a set of rays. A node visit tests the boxes of all children of one node (linear: the node's own box); a
-/// primitive is one triangle tested.
+/// primitive is one triangle tested. In packets `nodes` counts the tests made for that ray itself (for each active ray
+/// of a packet4); tests made once for a whole packet are `packet_nodes` of the packet's first ray.
 struct Counts {
-  std::uint64_t rays = 0, nodes = 0, leaves = 0, primitives = 0, hits = 0;
+  std::uint64_t rays = 0, nodes = 0, leaves = 0, primitives = 0, hits = 0, packet_nodes = 0;
   Counts& operator+=(const Counts& o) {
     rays += o.rays, nodes += o.nodes, leaves += o.leaves, primitives += o.primitives, hits += o.hits;
+    packet_nodes += o.packet_nodes;
     return *this;
   }
 };
@@ -65,6 +85,20 @@ struct Kernels {
 /// `isa` as choose_isa gives it. `normals` may be null; else it gets the geometric normal (v1 - v0) x (v2 - v0), not
 /// normalised, zero on a miss. `per_ray` gets one entry for each ray.
 Result<Kernels> select_kernels(layouts::LayoutId layout, Mode mode, std::string_view isa);
+
+/// The kernels of one traversal and mode. `normals` and `per_ray` may be null, else they have an entry for each ray. A
+/// packet is made of neighbours in the array, beginning at the first.
+struct TraversalKernels {
+  void (*closest)(const layouts::Layout&, const Ray* rays, std::size_t count, const TraversalOptions&, Hit* hits,
+                  Vec3* normals, Counts* per_ray);
+  void (*any)(const layouts::Layout&, const Ray* rays, std::size_t count, const TraversalOptions&,
+              std::uint8_t* occluded, Counts* per_ray);
+};
+/// Kernels for options that are not the default ones, which select_kernels has. They are the same code on every
+/// instruction set. Errors: a layout that has not got that traversal, a packet size out of range.
+Result<TraversalKernels> select_traversal(layouts::LayoutId layout, Mode mode, const TraversalOptions& options);
+/// What select_traversal would refuse; default options are never refused.
+Status check_traversal(layouts::LayoutId layout, const TraversalOptions& options);
 
 /// A closest hit by testing every triangle of the mesh in double precision (the determinant form of Moeller and
 /// Trumbore with inclusive edges; degenerate and non-finite triangles are passed over). The oracle of the tests.

@@ -22,6 +22,11 @@ Result<std::vector<Ray>> primary_rays(const View& view, int width, int height);
 /// start from and gives no rays.
 std::vector<Ray> random_rays(const Box& bounds, std::size_t count, std::uint64_t seed);
 
+/// Lines through the box without an end, uniform among all that meet it: every line has its origin outside and tmax =
+/// infinity. What the surface area cost assumes of rays; its expected counts are measured with these, non-terminating.
+/// A box that is empty or not finite gives none.
+std::vector<Ray> line_rays(const Box& bounds, std::size_t count, std::uint64_t seed);
+
 /// For each primary ray that hits: one ray from the hit point, cosine-distributed about the normal on the side the ray
 /// came from; primary rays that miss give none. Origins are lifted off the surface by a few ulps, by more
 /// where a sliver's ray would still meet its own triangle. In the order of the primary rays.

@@ -2,6 +2,8 @@
 // kernels.
 #include "boxwood/accel.h"
 
+#include <algorithm>
+
 #include "boxwood/metrics.h"
 #include "boxwood/optimizers.h"
 
@@ -40,6 +42,26 @@ struct Accel::State {
   std::size_t excluded = 0;
 
   const queries::Kernels& kernels(queries::Mode mode) const { return mode == queries::Mode::robust ? robust : fast; }
+
+  /// Hands ranges of rays to `f`, each a whole number of packets, so that packets do not depend on the threads.
+  template <class F>
+  Status for_rays(std::size_t count, const queries::TraversalOptions& traversal, F f) const {
+    using queries::Traversal;
+    const bool has_size = traversal.traversal == Traversal::range || traversal.traversal == Traversal::partition;
+    const std::size_t packet = has_size ? traversal.packet_size : 4;
+    const std::size_t chunk = packet * std::max<std::size_t>(1, kRaysPerChunk / packet);
+    try {
+      executor->for_chunks(count, chunk,
+                           [&](std::size_t, std::size_t begin, std::size_t end) { f(begin, end - begin); });
+      return {};
+    } catch (const std::bad_alloc&) {
+      return {ErrorCode::out_of_memory, "not enough memory for the stacks of " + std::to_string(count) + " rays"};
+    }
+  }
+  Status closest(std::span<const Ray> rays, Hit* hits, Vec3* normals, queries::Counts* per_ray, queries::Mode mode,
+                 const queries::TraversalOptions& traversal) const;
+  Status any(std::span<const Ray> rays, std::uint8_t* occluded, queries::Counts* per_ray, queries::Mode mode,
+             const queries::TraversalOptions& traversal) const;
 };
 
 Accel::Accel(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -115,48 +137,66 @@ bool Accel::any_hit(const Ray& ray, queries::Mode mode) const {
   return occluded != 0;
 }
 
-Status Accel::closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<Vec3> normals,
-                           queries::Mode mode) const {
+Status Accel::State::closest(std::span<const Ray> rays, Hit* hits, Vec3* normals, queries::Counts* per_ray,
+                             queries::Mode mode, const queries::TraversalOptions& traversal) const {
+  const auto at = [](auto* array, std::size_t begin) { return array ? array + begin : nullptr; };
+  if (traversal.is_default())
+    return for_rays(rays.size(), traversal, [&](std::size_t begin, std::size_t n) {
+      if (per_ray)
+        kernels(mode).closest_counted(layout, rays.data() + begin, n, hits + begin, per_ray + begin);
+      else
+        kernels(mode).closest(layout, rays.data() + begin, n, hits + begin, at(normals, begin));
+    });
+  const auto other = queries::select_traversal(layout.id, mode, traversal);
+  if (!other) return other.error();
+  return for_rays(rays.size(), traversal, [&](std::size_t begin, std::size_t n) {
+    other->closest(layout, rays.data() + begin, n, traversal, hits + begin, at(normals, begin), at(per_ray, begin));
+  });
+}
+
+Status Accel::State::any(std::span<const Ray> rays, std::uint8_t* occluded, queries::Counts* per_ray,
+                         queries::Mode mode, const queries::TraversalOptions& traversal) const {
+  if (traversal.is_default())
+    return for_rays(rays.size(), traversal, [&](std::size_t begin, std::size_t n) {
+      if (per_ray)
+        kernels(mode).any_counted(layout, rays.data() + begin, n, occluded + begin, per_ray + begin);
+      else
+        kernels(mode).any(layout, rays.data() + begin, n, occluded + begin);
+    });
+  const auto other = queries::select_traversal(layout.id, mode, traversal);
+  if (!other) return other.error();
+  return for_rays(rays.size(), traversal, [&](std::size_t begin, std::size_t n) {
+    other->any(layout, rays.data() + begin, n, traversal, occluded + begin, per_ray ? per_ray + begin : nullptr);
+  });
+}
+
+Status Accel::closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<Vec3> normals, queries::Mode mode,
+                           const queries::TraversalOptions& traversal) const {
   if (auto s = same_length(rays.size(), hits.size(), "hits"); !s) return s;
   if (!normals.empty())
     if (auto s = same_length(rays.size(), normals.size(), "normals"); !s) return s;
-  const auto kernel = state_->kernels(mode).closest;
-  state_->executor->for_chunks(rays.size(), kRaysPerChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-    kernel(state_->layout, rays.data() + begin, end - begin, hits.data() + begin,
-           normals.empty() ? nullptr : normals.data() + begin);
-  });
-  return {};
+  return state_->closest(rays, hits.data(), normals.empty() ? nullptr : normals.data(), nullptr, mode, traversal);
 }
 
-Status Accel::any_hits(std::span<const Ray> rays, std::span<std::uint8_t> occluded, queries::Mode mode) const {
+Status Accel::any_hits(std::span<const Ray> rays, std::span<std::uint8_t> occluded, queries::Mode mode,
+                       const queries::TraversalOptions& traversal) const {
   if (auto s = same_length(rays.size(), occluded.size(), "answers"); !s) return s;
-  const auto kernel = state_->kernels(mode).any;
-  state_->executor->for_chunks(rays.size(), kRaysPerChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-    kernel(state_->layout, rays.data() + begin, end - begin, occluded.data() + begin);
-  });
-  return {};
+  return state_->any(rays, occluded.data(), nullptr, mode, traversal);
 }
 
 Status Accel::closest_hits_counted(std::span<const Ray> rays, std::span<Hit> hits, std::span<queries::Counts> per_ray,
-                                   queries::Mode mode) const {
+                                   queries::Mode mode, const queries::TraversalOptions& traversal) const {
   if (auto s = same_length(rays.size(), hits.size(), "hits"); !s) return s;
   if (auto s = same_length(rays.size(), per_ray.size(), "counts"); !s) return s;
-  const auto kernel = state_->kernels(mode).closest_counted;
-  state_->executor->for_chunks(rays.size(), kRaysPerChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-    kernel(state_->layout, rays.data() + begin, end - begin, hits.data() + begin, per_ray.data() + begin);
-  });
-  return {};
+  return state_->closest(rays, hits.data(), nullptr, per_ray.data(), mode, traversal);
 }
 
 Status Accel::any_hits_counted(std::span<const Ray> rays, std::span<std::uint8_t> occluded,
-                               std::span<queries::Counts> per_ray, queries::Mode mode) const {
+                               std::span<queries::Counts> per_ray, queries::Mode mode,
+                               const queries::TraversalOptions& traversal) const {
   if (auto s = same_length(rays.size(), occluded.size(), "answers"); !s) return s;
   if (auto s = same_length(rays.size(), per_ray.size(), "counts"); !s) return s;
-  const auto kernel = state_->kernels(mode).any_counted;
-  state_->executor->for_chunks(rays.size(), kRaysPerChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-    kernel(state_->layout, rays.data() + begin, end - begin, occluded.data() + begin, per_ray.data() + begin);
-  });
-  return {};
+  return state_->any(rays, occluded.data(), per_ray.data(), mode, traversal);
 }
 
 Box Accel::bounds() const {

@@ -101,4 +101,17 @@ Box ConvexPolygon::bounds() const {
   return box;
 }
 
+double ConvexPolygon::area() const {
+  double sum[3] = {};
+  for (std::size_t i = 2; i < static_cast<std::size_t>(size_); ++i) {
+    double a[3], b[3];
+    for (std::size_t k = 0; k < 3; ++k)
+      a[k] = corners_[i - 1][k] - corners_[0][k], b[k] = corners_[i][k] - corners_[0][k];
+    sum[0] += a[1] * b[2] - a[2] * b[1];
+    sum[1] += a[2] * b[0] - a[0] * b[2];
+    sum[2] += a[0] * b[1] - a[1] * b[0];
+  }
+  return 0.5 * std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+}
+
 }  // namespace boxwood

@@ -27,6 +27,8 @@ class ConvexPolygon {
   void chop(int axis, std::span<const float> positions, std::span<Box> parts) const;
   /// A box in single precision that holds the exact polygon; empty when there is no corner.
   Box bounds() const;
+  /// Of the polygon in its plane; zero when it has no corner or has shrunk to a line or point.
+  double area() const;
 
  private:
   using Point = std::array<double, 3>;

@@ -2,19 +2,9 @@
 // MacDonald and Booth 1990 (macdonald1990). Not normalised by C_T; area ratios and the sum in double precision, in
 // the order of the nodes.
 #include "boxwood/metrics.h"
+#include "metrics/box_measures.h"
 
 namespace boxwood::metrics {
-namespace {
-
-/// In double: areas of boxes of any float size neither overflow nor vanish.
-double half_area(const Box& box) {
-  const double x = static_cast<double>(box.upper.x) - box.lower.x;
-  const double y = static_cast<double>(box.upper.y) - box.lower.y;
-  const double z = static_cast<double>(box.upper.z) - box.lower.z;
-  return x * y + y * z + z * x;
-}
-
-}  // namespace
 
 double surface_area_cost(const tree::BinaryTree& tree, const tree::CostModel& cost) {
   if (tree.empty()) return 0;
@@ -22,7 +12,7 @@ double surface_area_cost(const tree::BinaryTree& tree, const tree::CostModel& co
   double sum = 0;
   for (const tree::Node& node : tree.nodes) {
     const double share = root_area > 0 ? half_area(node.bounds) / root_area : 1.0;
-    sum += share * (node.is_leaf() ? static_cast<double>(node.count) * cost.intersection : cost.traversal);
+    sum += share * visit_cost(node, cost);
   }
   return sum;
 }

@@ -27,6 +27,9 @@ constexpr Isa kIsas[] = {
     {"scalar", HWY_BASELINE_SCALAR},
 };
 
+constexpr Traversal kTraversals[] = {Traversal::single, Traversal::packet4, Traversal::range, Traversal::partition};
+constexpr std::uint32_t kSmallestPacket = 16, kLargestPacket = 1024;
+
 bool runs_here(const Isa& isa) {
   return isa.target == HWY_BASELINE_SCALAR || (hwy::SupportedTargets() & HWY_TARGETS & isa.target) != 0;
 }
@@ -53,6 +56,18 @@ Result<Mode> find_mode(std::string_view text) {
 
 const char* name(Mode mode) {
   return mode == Mode::robust ? "robust" : "fast";
+}
+
+Result<Traversal> find_traversal(std::string_view text) {
+  for (Traversal traversal : kTraversals)
+    if (text == name(traversal)) return traversal;
+  return {ErrorCode::unknown_name,
+          "unknown traversal '" + std::string(text) + "'; there are: single, packet4, range, partition"};
+}
+
+const char* name(Traversal traversal) {
+  constexpr const char* kNames[] = {"single", "packet4", "range", "partition"};
+  return kNames[static_cast<std::size_t>(traversal)];
 }
 
 std::vector<std::string> supported_isas() {
@@ -94,6 +109,36 @@ Result<Kernels> select_kernels(layouts::LayoutId layout, Mode mode, std::string_
       return wide8_kernels(mode, target);
   }
   return {ErrorCode::unknown_name, "there is no layout number " + std::to_string(static_cast<int>(layout))};
+}
+
+Status check_traversal(layouts::LayoutId layout, const TraversalOptions& options) {
+  if (options.is_default()) return {};
+  if (layout != layouts::LayoutId::linear)
+    return {ErrorCode::unsupported,
+            std::string("the layout ") + layouts::name(layout) + " has no traversal but single, terminating; " +
+                (options.terminating ? name(options.traversal) : "non-terminating") + " rays take the layout linear"};
+  const bool has_size = options.traversal == Traversal::range || options.traversal == Traversal::partition;
+  if (has_size && (options.packet_size < kSmallestPacket || options.packet_size > kLargestPacket))
+    return {ErrorCode::out_of_range, "the packet size is " + std::to_string(options.packet_size) +
+                                         ", it must be from " + std::to_string(kSmallestPacket) + " to " +
+                                         std::to_string(kLargestPacket)};
+  return {};
+}
+
+Result<TraversalKernels> select_traversal(layouts::LayoutId layout, Mode mode, const TraversalOptions& options) {
+  if (Status status = check_traversal(layout, options); !status) return status.error();
+  switch (options.traversal) {
+    case Traversal::packet4:
+      return packet4_kernels(mode);
+    case Traversal::range:
+      return range_kernels(mode);
+    case Traversal::partition:
+      return partition_kernels(mode);
+    case Traversal::single:
+      break;
+  }
+  if (options.terminating) return {ErrorCode::invalid_argument, "single, terminating rays are select_kernels' part"};
+  return unending_kernels(mode);
 }
 
 }  // namespace boxwood::queries

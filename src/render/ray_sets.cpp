@@ -15,12 +15,38 @@ constexpr std::size_t kBatch = std::size_t{1} << 20;
 constexpr std::size_t kChunk = 4096;
 
 // Each kind of ray set has dimensions of the random numbers to itself, so that one seed may serve them all.
-constexpr std::uint64_t kOriginDimension = 0, kDirectionDimension = 2, kDiffuseDimension = 3, kOcclusionDimension = 4;
+constexpr std::uint64_t kOriginDimension = 0, kDirectionDimension = 2, kDiffuseDimension = 3, kOcclusionDimension = 4,
+                        kLineDimension = 5;
 
 /// Uniform between two numbers: in double, so that no width of a box overflows, and never outside.
 float between(float lower, float upper, double share) {
   const double value = (1 - share) * lower + share * upper;
   return std::clamp(static_cast<float>(value), lower, upper);
+}
+
+/// A point on the box's surface, uniform by area, with the normal that points inside. A box without area has its six
+/// sides equally often.
+struct SidePoint {
+  Vector position, normal;
+};
+SidePoint point_on_side(const Box& box, double side_share, Sample2 place) {
+  const Vector extent(box.upper - box.lower), lower(box.lower), upper(box.upper);
+  double areas[3] = {extent.y * extent.z, extent.z * extent.x, extent.x * extent.y};
+  double sum = areas[0] + areas[1] + areas[2];
+  if (!(sum > 0)) areas[0] = areas[1] = areas[2] = 1, sum = 3;
+  double rest = 2 * side_share * sum;
+  const bool is_upper = rest >= sum;
+  if (is_upper) rest -= sum;
+  const int axis = rest < areas[0] ? 0 : rest < areas[0] + areas[1] ? 1 : areas[2] > 0 ? 2 : areas[1] > 0 ? 1 : 0;
+  const double sign = is_upper ? -1 : 1;
+  switch (axis) {
+    case 0:
+      return {{is_upper ? upper.x : lower.x, lower.y + place.x * extent.y, lower.z + place.y * extent.z}, {sign, 0, 0}};
+    case 1:
+      return {{lower.x + place.x * extent.x, is_upper ? upper.y : lower.y, lower.z + place.y * extent.z}, {0, sign, 0}};
+    default:
+      return {{lower.x + place.x * extent.x, lower.y + place.y * extent.y, is_upper ? upper.z : lower.z}, {0, 0, sign}};
+  }
 }
 
 /// Turns the errors of a batch query into what a function without a Result can say. The spans are of equal length, so
@@ -129,6 +155,22 @@ std::vector<Ray> random_rays(const Box& bounds, std::size_t count, std::uint64_t
         {.origin = {between(bounds.lower.x, bounds.upper.x, xy.x), between(bounds.lower.y, bounds.upper.y, xy.y),
                     between(bounds.lower.z, bounds.upper.z, z.x)},
          .direction = sphere_direction(random_pair(seed, i, kDirectionDimension)).rounded()});
+  }
+  return rays;
+}
+
+// Lines that enter a convex body cross its surface uniformly by area, with a density proportional to the cosine of the
+// angle to its normal (Cauchy, Crofton), so no line need be rejected.
+std::vector<Ray> line_rays(const Box& bounds, std::size_t count, std::uint64_t seed) {
+  std::vector<Ray> rays;
+  if (bounds.is_empty() || !is_finite(bounds.lower) || !is_finite(bounds.upper)) return rays;
+  rays.reserve(count);
+  const double diagonal = length(Vector(bounds.upper) - Vector(bounds.lower));
+  for (std::size_t i = 0; i < count; ++i) {
+    const SidePoint point =
+        point_on_side(bounds, random_pair(seed, i, kLineDimension).x, random_pair(seed, i, kLineDimension + 1));
+    const Vector direction = cosine_direction(random_pair(seed, i, kLineDimension + 2), point.normal);
+    rays.push_back({.origin = (point.position - direction * diagonal).rounded(), .direction = direction.rounded()});
   }
   return rays;
 }

@@ -110,6 +110,10 @@ class Bench(CommandLineTest):
         self.refused("bench", self.cube, "--modes", "rough", says="rough")
         self.refused("bench", self.cube, "--rays", "sun", says="sun")
         self.refused("bench", self.cube, "--rivals", "nobody", says="nobody")
+        self.refused("bench", self.cube, "--traversals", "dance", says="dance")
+        self.refused("bench", self.cube, "--traversals", "range", says=["wide8", "linear"])
+        self.refused("bench", self.cube, "--non-terminating", says=["wide8", "linear"])
+        self.refused("bench", self.cube, "--layouts", "linear", "--traversals", "range", "--packet-size", 15, says="15")
         self.refused("bench", self.cube, "--repeat", 0, code=2, says="0")
         self.refused("bench", self.cube, "--size", "0x4", code=2, says="0")
         self.refused("bench", self.cube, "--size", "big", code=2, says="big")
@@ -117,6 +121,31 @@ class Bench(CommandLineTest):
         self.refused("bench", self.cube, "--camera", "nose=1:2:3", code=2, says="nose")
         self.refused("bench", self.cube, "--camera", "fov=180", code=2, says="180")
         self.refused("bench", self.cube, "--camera", "eye=1:1:1,look_at=1:1:1", *QUICK, says="1")
+
+    def test_traversals_and_rays_that_hits_do_not_end(self):
+        report = self.report("bench", SCENE, "--builders", "binned-sah", "--layouts", "linear,wide8", "--traversals",
+                             "single,packet4,range,partition", "--packet-size", 32, "--non-terminating", "--rays",
+                             "primary,occlusion,lines", *QUICK)
+        rows = [row for row in report["rows"] if row["threads"] == 1]
+        self.assertEqual({row["disagreements"] for row in rows}, {0})
+        self.assertEqual({(row["traversal"], row["terminating"]) for row in rows if row["layout"] == "wide8"},
+                         {("single", True)})
+        linear = [row for row in rows if row["layout"] == "linear"]
+        self.assertEqual(len(linear), 4 * 2 * 3)
+        self.assertEqual({(row["traversal"], row["packet_size"]) for row in linear},
+                         {("single", 1), ("packet4", 4), ("range", 32), ("partition", 32)})
+        for kind in ("primary", "occlusion", "lines"):
+            one = {(row["traversal"], row["terminating"]): row for row in linear if row["rays"] == kind}
+            self.assertEqual(len({row["hits"] for row in one.values()}), 1)
+            unending = {one[traversal, False]["primitives_per_ray"] for traversal in
+                        ("single", "packet4", "range", "partition")}
+            self.assertEqual(len(unending), 1, "rays that nothing ends test the same triangles")
+            self.assertGreaterEqual(one["single", False]["nodes_per_ray"], one["single", True]["nodes_per_ray"])
+            self.assertEqual(one["single", True]["packet_nodes_per_ray"], 0)
+            self.assertGreater(one["range", True]["packet_nodes_per_ray"], 0)
+        text = self.run_program("bench", self.cube, "--builders", "middle", "--layouts", "linear", "--traversals",
+                                "packet4,range", *QUICK).stdout
+        self.assertIn("range of 256", text)
 
     def test_embree_as_a_rival(self):
         arguments = ["bench", SCENE, "--builders", "sweep-sah", "--rivals", "embree", "--modes", "robust,fast", *QUICK]

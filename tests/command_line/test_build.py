@@ -63,6 +63,21 @@ class Build(CommandLineTest):
         self.assertIsNone(self.report("build", self.cube, "--no-validate")["valid"])
         self.assertIn("not checked", self.run_program("build", self.cube, "--no-validate").stdout)
 
+    def test_metrics(self):
+        self.assertNotIn("end_point_overlap", self.report("build", self.cube))
+        exact = self.report("build", "scene:atrium,triangles=3000", "--metrics")
+        self.assertGreater(exact["end_point_overlap"], 0)
+        self.assertEqual(exact["end_point_overlap_error"], 0)
+        self.assertGreater(exact["leaf_count_variability"], 5 * exact["leaf_count_variability_error"])
+        self.assertTrue(0 <= exact["sibling_overlap_volume"] <= 1 and 0 <= exact["sibling_overlap_area"] <= 1)
+        self.assertEqual(exact["references_per_primitive"], 1)
+        sampled = self.report("build", "scene:atrium,triangles=3000", "--metrics", "--overlap-samples", 1000)
+        self.assertGreater(sampled["end_point_overlap_error"], 0)
+        self.assertAlmostEqual(sampled["end_point_overlap"], exact["end_point_overlap"],
+                               delta=5 * sampled["end_point_overlap_error"])
+        self.assertIn("EPO", self.run_program("build", self.cube, "--metrics").stdout)
+        self.refused("build", self.cube, "--overlap-samples", 5, code=2, says="--metrics")
+
     def test_awkward_meshes(self):
         corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
         meshes = {

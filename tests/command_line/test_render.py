@@ -29,7 +29,7 @@ def read_png(path):
 class Render(CommandLineTest):
     def test_every_shade(self):
         pictures = set()
-        for shade in ("normals", "ao", "depth", "nodes", "primitives", "ids", "clusters"):
+        for shade in ("normals", "ao", "depth", "nodes", "primitives", "ids", "clusters", "children"):
             with self.subTest(shade):
                 path = self.folder / f"{shade}.png"
                 report = self.report("render", SCENE, "-o", path, "--size", "200x120", "--shade", shade)
@@ -40,7 +40,7 @@ class Render(CommandLineTest):
                 self.assertEqual((width, height), (200, 120))
                 self.assertGreater(len(set(pixels)), 20, "the picture shows something")
                 pictures.add(pixels)
-        self.assertEqual(len(pictures), 7)
+        self.assertEqual(len(pictures), 8)
 
     def test_children_of_a_node(self):
         pictures = set()
@@ -51,7 +51,7 @@ class Render(CommandLineTest):
         self.assertEqual(len(pictures), 3, "the default is node 0")
         for arguments, message in ((["--shade", "children", "--node", "99999999"], "there is no node 99999999"),
                                    (["--shade", "ids", "--node", "1"], "--node is for --shade children only"),
-                                   (["--shade", "blue"], "primitives, ids, children")):
+                                   (["--shade", "blue"], "primitives, ids, subdivided, clusters, children")):
             self.refused("render", SCENE, "-o", "p.png", *arguments, says=[message])
 
     def test_the_printed_camera_repeats_the_picture(self):

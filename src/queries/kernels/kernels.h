@@ -11,6 +11,12 @@ Kernels linear_kernels(Mode mode);
 Kernels wide4_kernels(Mode mode, std::int64_t target);
 Kernels wide8_kernels(Mode mode, std::int64_t target);
 
+/// The other ways through the linear layout. Single rays that hits do not end, and packets.
+TraversalKernels unending_kernels(Mode mode);
+TraversalKernels packet4_kernels(Mode mode);
+TraversalKernels range_kernels(Mode mode);
+TraversalKernels partition_kernels(Mode mode);
+
 /// Place of a target in the tables HWY_EXPORT makes. A dispatcher of our own, so that forcing an instruction set
 /// changes nothing for other users of Highway in the process.
 inline std::size_t dispatch_index(std::int64_t target) {

@@ -4,60 +4,16 @@
 #include <memory>
 
 #include "queries/kernels/kernels.h"
-#include "queries/triangle_test.h"
+#include "queries/kernels/linear_steps.h"
 
 namespace boxwood::queries {
 namespace {
 
-using layouts::Layout;
-using layouts::LinearNode;
-using layouts::LinearTriangle;
-
 constexpr std::size_t kInlineStack = 128;
 
-bool box_test(const Box& box, const RaySetup& ray, float tmax) {
-  float near = ray.tmin, far = tmax;
-  for (int axis = 0; axis < 3; ++axis) {
-    const bool negative = ray.entry_plane[axis] & 1;
-    const float entry = (negative ? box.upper : box.lower)[axis] * ray.reciprocal[axis] + ray.entry_add[axis];
-    const float exit = (negative ? box.lower : box.upper)[axis] * ray.reciprocal[axis] + ray.exit_add[axis];
-    near = maximum(near, entry);
-    far = minimum(far, exit);
-  }
-  return near <= far;
-}
-
-struct Best {
-  float t, u = 0, v = 0;
-  const LinearTriangle* triangle = nullptr;
-};
-
-PermutedTriangle permuted(const Triangle& triangle, const RaySetup& ray) {
-  float corner[3][3];
-  static_assert(sizeof corner == sizeof triangle);
-  std::memcpy(corner, &triangle, sizeof corner);
-  PermutedTriangle p;
-  for (int i = 0; i < 3; ++i) {
-    p.x[i] = corner[i][ray.kx];
-    p.y[i] = corner[i][ray.ky];
-    p.z[i] = corner[i][ray.kz];
-  }
-  return p;
-}
-
-template <bool kRobust>
-bool test_triangle(const Triangle& triangle, const RaySetup& ray, TriangleHit& hit) {
-  if constexpr (!kRobust) return fast_test(triangle, ray, hit);
-  const PermutedTriangle p = permuted(triangle, ray);
-  ShearedTriangle sheared;
-  if (!robust_test(p, ray, sheared)) return false;
-  const Location location(p, ray);
-  hit = {location.t(), static_cast<float>(location.u_times_sum() / location.sum()),
-         static_cast<float>(location.v_times_sum() / location.sum())};
-  return true;
-}
-
-template <bool kRobust, bool kAny, bool kCount>
+/// With `kTerminate` false a hit neither shortens the ray nor ends its way: every node on the line is visited, as the
+/// surface area cost assumes.
+template <bool kRobust, bool kAny, bool kCount, bool kTerminate>
 bool traverse(const Layout& layout, const RaySetup& ray, std::uint32_t* const stack, Best& best, Counts* counts) {
   const auto* nodes = reinterpret_cast<const LinearNode*>(layout.nodes.data());
   const auto* triangles = reinterpret_cast<const LinearTriangle*>(layout.triangles.data());
@@ -66,7 +22,7 @@ bool traverse(const Layout& layout, const RaySetup& ray, std::uint32_t* const st
   for (;;) {
     const LinearNode& node = nodes[current];
     if constexpr (kCount) ++counts->nodes;
-    if (box_test(node.bounds, ray, best.t)) {
+    if (box_test(node.bounds, ray, kTerminate ? best.t : ray.tmax)) {
       const std::uint32_t count = node.count_and_axis >> 2;
       if (count == 0) {
         const bool second_first = ray.entry_plane[node.count_and_axis & 3] & 1;
@@ -75,22 +31,15 @@ bool traverse(const Layout& layout, const RaySetup& ray, std::uint32_t* const st
         continue;
       }
       if constexpr (kCount) ++counts->leaves, counts->primitives += count;
-      for (const LinearTriangle* t = triangles + node.offset; t != triangles + node.offset + count; ++t) {
-        TriangleHit hit;
-        if (!test_triangle<kRobust>(t->triangle, ray, hit)) continue;
-        const bool nearer =
-            hit.t < best.t || (hit.t == best.t && (!best.triangle || t->primitive < best.triangle->primitive));
-        if (!(hit.t >= ray.tmin && nearer)) continue;
-        best = {hit.t, hit.u, hit.v, t};
-        if (kAny) return true;
-      }
+      for (const LinearTriangle* t = triangles + node.offset; t != triangles + node.offset + count; ++t)
+        if (improve<kRobust>(*t, ray, best) && kAny && kTerminate) return true;
     }
     if (top == stack) return best.triangle != nullptr;
     current = *--top;
   }
 }
 
-template <bool kRobust, bool kAny, bool kCount>
+template <bool kRobust, bool kAny, bool kCount, bool kTerminate = true>
 void trace(const Layout& layout, const Ray* rays, std::size_t count, Hit* hits, Vec3* normals, std::uint8_t* occluded,
            Counts* per_ray) {
   std::uint32_t inline_stack[kInlineStack];
@@ -103,15 +52,15 @@ void trace(const Layout& layout, const Ray* rays, std::size_t count, Hit* hits, 
     bool hit = layout.root != layouts::kNoRoot && set_up(rays[i], layout.bounds, setup);
     if (hit) {
       best.t = setup.tmax;
-      hit = traverse<kRobust, kAny, kCount>(layout, setup, heap ? heap.get() : inline_stack, best,
-                                            kCount ? per_ray + i : nullptr);
+      hit = traverse<kRobust, kAny, kCount, kTerminate>(layout, setup, heap ? heap.get() : inline_stack, best,
+                                                        kCount ? per_ray + i : nullptr);
     }
     if constexpr (kCount) per_ray[i].hits = hit;
     if constexpr (kAny) {
       occluded[i] = hit;
     } else {
-      hits[i] = hit ? Hit{best.t * setup.t_scale, best.u, best.v, best.triangle->primitive} : Hit{};
-      if (normals) normals[i] = hit ? best.triangle->triangle.normal() : Vec3{};
+      hits[i] = hit ? make_hit(setup, best) : Hit{};
+      if (normals) normals[i] = normal_of(best);
     }
   }
 }
@@ -134,10 +83,32 @@ Kernels make_kernels() {
   };
 }
 
+template <bool kRobust>
+TraversalKernels make_unending_kernels() {
+  return {
+      [](const Layout& l, const Ray* r, std::size_t n, const TraversalOptions&, Hit* h, Vec3* normals, Counts* c) {
+        if (c)
+          trace<kRobust, false, true, false>(l, r, n, h, normals, nullptr, c);
+        else
+          trace<kRobust, false, false, false>(l, r, n, h, normals, nullptr, nullptr);
+      },
+      [](const Layout& l, const Ray* r, std::size_t n, const TraversalOptions&, std::uint8_t* o, Counts* c) {
+        if (c)
+          trace<kRobust, true, true, false>(l, r, n, nullptr, nullptr, o, c);
+        else
+          trace<kRobust, true, false, false>(l, r, n, nullptr, nullptr, o, nullptr);
+      },
+  };
+}
+
 }  // namespace
 
 Kernels linear_kernels(Mode mode) {
   return mode == Mode::robust ? make_kernels<true>() : make_kernels<false>();
+}
+
+TraversalKernels unending_kernels(Mode mode) {
+  return mode == Mode::robust ? make_unending_kernels<true>() : make_unending_kernels<false>();
 }
 
 }  // namespace boxwood::queries

@@ -40,6 +40,48 @@ TEST(RandomRays, OriginsFillTheBoxEvenly) {
   EXPECT_NEAR(chi_square, counts.size() - 1, 6 * std::sqrt(2.0 * counts.size()));
 }
 
+// A convex body inside a box is met by the share of lines that its area is of the box's area.
+TEST(LineRays, MeetBoxesInProportionToTheirAreas) {
+  constexpr std::size_t kCount = 100000;
+  const auto rays = line_rays(kBounds, kCount, 5);
+  ASSERT_EQ(rays.size(), kCount);
+  const auto meets = [](const Box& box, const Ray& ray) {
+    double near = 0, far = kInfinity;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double a = (static_cast<double>(box.lower[axis]) - ray.origin[axis]) / ray.direction[axis];
+      const double b = (static_cast<double>(box.upper[axis]) - ray.origin[axis]) / ray.direction[axis];
+      near = std::max(near, std::min(a, b)), far = std::min(far, std::max(a, b));
+    }
+    return near <= far;
+  };
+  const Box grown{kBounds.lower - Vec3{1e-4f, 1e-4f, 1e-4f}, kBounds.upper + Vec3{1e-4f, 1e-4f, 1e-4f}};
+  const Box inner[] = {{{-1, 2, -3}, {0, 2.5f, 0}}, {{1, 2.1f, 2}, {3, 2.2f, 9}}, {{0, 2, 0}, {2, 2, 3}}};
+  std::size_t hits[3]{};
+  for (const Ray& ray : rays) {
+    ASSERT_TRUE(meets(grown, ray));
+    Box outside = kBounds;
+    outside.grow(ray.origin);
+    ASSERT_FALSE(outside == kBounds) << "starts inside";
+    for (int i = 0; i < 3; ++i) hits[i] += meets(inner[i], ray);
+  }
+  for (int i = 0; i < 3; ++i) {
+    const double share = static_cast<double>(inner[i].half_area()) / kBounds.half_area();
+    EXPECT_NEAR(static_cast<double>(hits[i]) / kCount, share, 5 * std::sqrt(share / kCount)) << i;
+  }
+  EXPECT_TRUE(same_bits(rays, line_rays(kBounds, kCount, 5)));
+  EXPECT_FALSE(same_bits(rays, line_rays(kBounds, kCount, 6)));
+}
+
+TEST(LineRays, BoxesWithoutVolumeOrAreaAndNone) {
+  EXPECT_TRUE(line_rays({}, 10, 1).empty());
+  for (const Box& box : {Box{{0, 0, 0}, {1, 2, 0}}, Box{{0, 0, 0}, {0, 0, 3}}, Box{{1, 1, 1}, {1, 1, 1}},
+                         Box{{-1e18f, -1e18f, -1e18f}, {1e18f, 1e18f, 1e18f}}})
+    for (const Ray& ray : line_rays(box, 100, 2)) {
+      EXPECT_TRUE(is_finite(ray.origin) && is_finite(ray.direction));
+      EXPECT_NEAR(length(ray.direction), 1, 1e-6f);
+    }
+}
+
 TEST(RandomRays, DirectionsHaveTheMomentsOfTheSphereAndIgnoreTheOrigin) {
   constexpr std::size_t kCount = 200000;
   const auto rays = random_rays(kBounds, kCount, 4);
