@@ -135,28 +135,67 @@ refs::ReferenceSet as_references(std::span<const std::uint32_t> roots, const Mer
   return set;
 }
 
-/// Merges the roots as a tree over them says, and gives the cluster that holds all.
-std::uint32_t merge_like(const tree::BinaryTree& top, std::vector<std::uint32_t> roots, std::uint32_t merged,
-                         MergeForest& forest) {
-  std::vector<std::uint32_t> cluster(top.nodes.size());
-  for (std::size_t n = top.nodes.size(); n-- > 0;) {  // children stand after their parents
-    const tree::Node& node = top.nodes[n];
-    if (!node.is_leaf()) {
-      cluster[n] = forest.merge(merged++, cluster[node.first], cluster[node.first + 1]);
-      continue;
+/// Merges the roots as a tree over them says. The inner node of rank k (its children stand at 2 * k + 1 and 2 * k + 2)
+/// makes merge number `merged` + k, and a subtree's inner nodes have consecutive ranks: subtrees merge in parallel.
+class TopMerger {
+ public:
+  TopMerger(const tree::BinaryTree& top, std::span<const std::uint32_t> roots, std::uint32_t merged,
+            MergeForest& forest)
+      : nodes_(top.nodes.span()), merged_(merged), forest_(forest), cluster_(top.nodes.size()) {
+    std::uint32_t next = merged + std::uint32_t(nodes_.size() / 2);
+    for (std::size_t n = 0; n < nodes_.size(); ++n) {
+      if (!nodes_[n].is_leaf()) continue;
+      cluster_[n] = roots[top.references[nodes_[n].first]];
+      // Tops without a limit on leaves may put several roots into one.
+      for (std::uint32_t r = 1; r < nodes_[n].count; ++r)
+        cluster_[n] = forest_.merge(next++, cluster_[n], roots[top.references[nodes_[n].first + r]]);
     }
-    std::vector<std::uint32_t> open;
-    for (std::uint32_t r = 0; r < node.count; ++r) open.push_back(roots[top.references[node.first + r]]);
-    while (open.size() > 1) {
-      std::size_t made = 0;
-      for (std::size_t i = 0; i < open.size(); i += 2)
-        open[made++] = i + 1 < open.size() ? forest.merge(merged++, open[i], open[i + 1]) : open[i];
-      open.resize(made);
-    }
-    cluster[n] = open[0];
   }
-  return cluster[0];
-}
+
+  /// The cluster that holds all.
+  std::uint32_t run(Executor& executor) {
+    std::vector<Subtree> upper, tasks, open;
+    if (!nodes_[0].is_leaf()) open.push_back({0, std::uint32_t(nodes_.size() / 2)});
+    while (!open.empty()) {
+      const Subtree subtree = open.back();
+      open.pop_back();
+      (subtree.inner <= kTaskSize ? tasks : upper).push_back(subtree);
+      if (subtree.inner <= kTaskSize) continue;
+      const std::uint32_t left = nodes_[subtree.node].first, right = left + 1;
+      const std::uint32_t below = subtree.inner - 1;
+      const std::uint32_t in_left = nodes_[left].is_leaf()    ? 0
+                                    : nodes_[right].is_leaf() ? below
+                                                              : rank(right) - rank(left);
+      if (in_left != 0) open.push_back({left, in_left});
+      if (in_left != below) open.push_back({right, below - in_left});
+    }
+    executor.for_chunks(tasks.size(), 1, [&](std::size_t t, std::size_t, std::size_t) {
+      const std::uint32_t first = rank(tasks[t].node);
+      for (std::uint32_t n = 2 * (first + tasks[t].inner); n > 2 * first; --n)  // children stand after their parents
+        if (!nodes_[n].is_leaf()) merge(n);
+      merge(tasks[t].node);
+    });
+    for (std::size_t u = upper.size(); u-- > 0;) merge(upper[u].node);
+    return cluster_[0];
+  }
+
+ private:
+  static constexpr std::uint32_t kTaskSize = 4096;
+  struct Subtree {
+    std::uint32_t node, inner;  ///< its root and how many inner nodes it has
+  };
+
+  std::uint32_t rank(std::uint32_t node) const { return (nodes_[node].first - 1) / 2; }
+  void merge(std::uint32_t node) {
+    const std::uint32_t first = nodes_[node].first;
+    cluster_[node] = forest_.merge(merged_ + rank(node), cluster_[first], cluster_[first + 1]);
+  }
+
+  std::span<const tree::Node> nodes_;
+  std::uint32_t merged_;
+  MergeForest& forest_;
+  std::vector<std::uint32_t> cluster_;  ///< of each node
+};
 
 /// The build's prices and one root to a leaf: the forest decides on leaves. (Letting the top stop at leaves of several
 /// roots, with prices in roots, gave the same trees in the same time below surface area heuristics.)
@@ -171,13 +210,13 @@ BuildOptions top_options(const OptionValues& options, const char* top) {
 
 Result<std::uint32_t> join_roots(const EdgeClustering& clustering, const OptionValues& options, const char* top,
                                  MergeForest& forest, const BuildContext& context) {
-  std::vector<std::uint32_t> roots = clustering.roots();
+  const std::vector<std::uint32_t> roots = clustering.roots();
   if (roots.size() == 1) return roots[0];
   const auto tree = build(as_references(roots, forest), top_options(options, top),
                           BuildContext{context.executor, {}, context.cancel});
   if (!tree)
     return Error{tree.error().code, "option 'top', builder '" + std::string(top) + "': " + tree.error().message};
-  return merge_like(*tree, std::move(roots), clustering.merged(), forest);
+  return TopMerger(*tree, roots, clustering.merged(), forest).run(context.executor);
 }
 
 void add_notes(const EdgeClustering& clustering, std::uint32_t references, tree::BinaryTree& tree) {
