@@ -1,10 +1,11 @@
 // SS-BVH: space is parted by the cheapest plane through a side of a box; triangles on both sides of it are cut. Popov,
 // Georgiev, Dimov and Slusallek 2009, section 5 (bib key popov2009), with the tight boxes and the planes between events
-// of their 5.2 as options. Ours differs where the paper says nothing: the references of the tree are limited (`growth`;
-// each range may use its share), and where that forbids the cheapest plane, whole references are split between bins of
-// centroids if this is cheaper than the best plane that is left. Ranges over `leaf.max` that no plane pays for are
-// parted whole as well, so that parts are never made for nothing. Events of a range are sorted by digits: O(n log n),
-// parallel over ranges, axes and chunks; the same bits for every number of threads, as nothing depends on their order.
+// of their 5.2 as options, and the better of planes and object splits (5.1) as another. Ours differs where the paper
+// says nothing: the references of the tree are limited (`growth`; each range may use its share), and where that forbids
+// the cheapest plane, whole references are split between bins of centroids if this is cheaper than the best plane that
+// is left. Ranges over `leaf.max` that no plane pays for are parted whole as well, so that parts are never made for
+// nothing. Events of a range are sorted by digits: O(n log n), parallel over ranges, axes and chunks; the same bits for
+// every number of threads, as nothing depends on their order.
 #include "builders/builder_list.h"
 #include "builders/parts/area_scale.h"
 #include "builders/parts/leaf_rule.h"
@@ -16,6 +17,8 @@ namespace boxwood::builders {
 namespace {
 
 constexpr const char* kAreas[] = {"box", "tight", "between"};  // in the order of SideAreas
+constexpr const char* kObjects[] = {"forced", "cheaper"};
+constexpr std::size_t kCheaper = 1;
 constexpr int kObjectBins = 64;
 
 struct SpatialSplit {
@@ -33,7 +36,8 @@ class SpatialSplitFinder {
       : primitives_(primitives),
         leaf_rule_(options.cost(), options.integer(kLeafMax)),
         area_scale_(area_scale(bounds)),
-        areas_(static_cast<SideAreas>(options.choice("areas"))) {}
+        areas_(static_cast<SideAreas>(options.choice("areas"))),
+        takes_cheaper_objects_(options.choice("objects") == kCheaper) {}
 
   SpatialSplit find(const SplittingRange& range, Executor& executor) const {
     const double area = scaled_half_area(range.bounds, area_scale_);
@@ -48,7 +52,7 @@ class SpatialSplitFinder {
     split.kind = SpatialSplit::Kind::plane;
     double cost = planes.best.cost;
     const bool pays = cost < area * static_cast<double>(range.size());
-    if (planes.overruns() || !pays) {
+    if (planes.overruns() || !pays || takes_cheaper_objects_) {
       split.objects = best_object_split(range.references, kObjectBins, area_scale_, executor);
       if (!pays || split.objects.bins.cost < cost) {
         cost = split.objects.bins.cost;
@@ -78,6 +82,7 @@ class SpatialSplitFinder {
   LeafRule leaf_rule_;
   float area_scale_;
   SideAreas areas_;
+  bool takes_cheaper_objects_;
 };
 
 constexpr OptionSpec kOptions[] = {
@@ -85,6 +90,9 @@ constexpr OptionSpec kOptions[] = {
     {.key = "areas",
      .description = "what planes are priced by: parts of the node's box, tight boxes, tight also between events",
      .choices = kAreas},
+    {.key = "objects",
+     .description = "whole references are split only where no plane may be taken, or wherever it is cheaper (5.1)",
+     .choices = kObjects},
     leaf_max_option(16, "most references in a leaf; 0: no limit but the cost")};
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 
 #include "boxwood/accel.h"
+#include "boxwood/metrics.h"
 #include "support/meshes.h"
 
 namespace boxwood {
@@ -81,6 +82,7 @@ class EveryBuilder : public ::testing::TestWithParam<std::size_t> {
       for (std::size_t i = 1; i < spec.choices.size(); ++i) all.push_back({{spec.key, spec.choices[i]}});
       if (spec.key == std::string_view("growth")) {
         all.push_back({{"growth", "1.05"}});
+        all.push_back({{"growth", "8"}});
         all.push_back({{"growth", "8"}, {"leaf.max", "1"}});
       }
     }
@@ -159,6 +161,20 @@ TEST_P(EveryBuilder, GrowthIsKept) {
     EXPECT_LE(static_cast<double>(tree->references.size()),
               std::stod(growth->second) * static_cast<double>(c.boxes.size()))
         << text(settings);
+  }
+}
+
+// Long triangles askew to the axes are what splitting is for, given room.
+TEST_P(EveryBuilder, SplittingPays) {
+  SequentialExecutor executor;
+  const Case& c = cases()[0];
+  const auto whole = builders::build(*refs::make_references(c.mesh, executor), {"sweep-sah", {}}, {executor});
+  ASSERT_TRUE(whole);
+  for (const Settings& settings : variants()) {
+    if (settings != Settings{{"growth", "8"}}) continue;
+    const auto split = build(c.mesh, settings, executor);
+    ASSERT_TRUE(split);
+    EXPECT_LT(metrics::surface_area_cost(*split), 0.9 * metrics::surface_area_cost(*whole)) << text(settings);
   }
 }
 

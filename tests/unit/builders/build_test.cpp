@@ -106,7 +106,7 @@ TEST(Build, CancelledBeforehandReturnsAnError) {
 }
 
 TEST(Build, CancelledHalfWayReturnsAnError) {
-  for (const char* id : {"binned-sah", "sweep-sah", "middle", "equal-counts"}) {
+  for (const char* id : {"binned-sah", "sweep-sah", "middle", "equal-counts", "spatial-split", "sbvh", "kd"}) {
     ThreadExecutor executor(2);
     std::atomic<bool> cancel = false;
     builders::BuildContext context{executor};
