@@ -83,6 +83,7 @@ class SplittingDriver {
       monitor_.finish(static_cast<std::size_t>(share * kProgressSteps));
     });
     if (monitor_.cancelled()) return cancelled_error();
+    monitor_.finish(kProgressSteps);  // what was lost when shares became whole steps
     return join(subtrees, small_slots, set.primitive_count);
   }
 

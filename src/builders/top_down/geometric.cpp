@@ -207,7 +207,7 @@ constinit const BuilderInfo geometric_builder = {
     .paper = "popov2009",
     .cost_class = "O(K_R n log n)",
     .splits_references = false,
-    .largest_sensible = 1 << 22,
+    .largest_sensible = 1 << 24,
     .options = kOptions,
     .build = &build_geometric,
 };
