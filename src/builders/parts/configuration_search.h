@@ -33,6 +33,8 @@ struct ConfigurationPrice {
 struct PricedConfiguration {
   double cost = std::numeric_limits<double>::infinity();  ///< area * count of both sides, added, times the penalty
   Configuration boxes;
+  /// The least cost of those that split more references than is allowed.
+  double refused = std::numeric_limits<double>::infinity();
 };
 
 /// The counter gives SideCounts to two PlaneBoxes: a CountingTable or a CountingTree.
@@ -172,9 +174,12 @@ class ConfigurationSearch {
     std::uint32_t to_left = counts.left + counts.split, to_right = counts.right + counts.split;
     (left_area <= right_area ? to_left : to_right) += counts.both;
     const bool useful = 0 < to_left && to_left < references_ && 0 < to_right && to_right < references_;
-    if (!useful || counts.split > price_.spare) return true;
+    if (!useful) return true;
     const double cost = penalty * (left_area * to_left + right_area * to_right);
-    if (cost < enough) state.best = {cost, {left, right}};
+    if (counts.split > price_.spare)
+      state.best.refused = std::min(state.best.refused, cost);
+    else if (cost < enough)
+      state.best.cost = cost, state.best.boxes = {left, right};
     return true;
   }
 

@@ -86,7 +86,7 @@ class GenericFinder {
     double refused = std::numeric_limits<double>::infinity();
     if (use_centroids_) consider_centroids(range, price, executor, best);
     if (use_planes_) refused = consider_planes(range, price, limit, executor, best);
-    if (use_grid_) consider_grid(range, price, limit, executor, best);
+    if (use_grid_) refused = std::min(refused, consider_grid(range, price, limit, executor, best));
     if (refused < std::min(best.cost, limit)) {
       price.overlap = 0;
       consider_centroids(range, price, executor, best);
@@ -160,15 +160,20 @@ class GenericFinder {
     return found.refused;
   }
 
-  void consider_grid(const SplittingRange& range, const ConfigurationPrice& price, double limit, Executor& executor,
-                     GenericSplit& best) const {
+  /// The same for the grid.
+  double consider_grid(const SplittingRange& range, const ConfigurationPrice& price, double limit, Executor& executor,
+                       GenericSplit& best) const {
     const CandidatePlanes planes = grid_planes(range.bounds, grid_.cells(range.size()));
     const CountingTable table(range.references, planes);
     const ConfigurationSearch search(range.bounds, static_cast<std::uint32_t>(range.size()), planes, table, price);
     std::vector<Candidate> candidates;
-    for (const PricedConfiguration& found : search.run(limit, executor))
+    double refused = std::numeric_limits<double>::infinity();
+    for (const PricedConfiguration& found : search.run(limit, executor)) {
       if (found.cost < limit) candidates.push_back({found.boxes, 0});
+      refused = std::min(refused, found.refused);
+    }
     consider(candidates, range, price, executor, best);
+    return refused;
   }
 
   void consider(const std::vector<Candidate>& candidates, const SplittingRange& range, const ConfigurationPrice& price,

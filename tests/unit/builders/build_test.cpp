@@ -7,6 +7,7 @@
 #include <atomic>
 #include <thread>
 
+#include "unit/builders/box_count.h"
 #include "unit/builders/reference_shapes.h"
 
 namespace boxwood {
@@ -82,7 +83,8 @@ TEST(Build, ProgressGrowsToOneAndNeverRunsTwiceAtOnce) {
       shares.push_back(share);
       inside.fetch_sub(1);
     };
-    const auto tree = builders::build(testing::reference_set(testing::soup(150000, 6)), {info.id, {}}, context);
+    const auto boxes = testing::soup(testing::box_count(info, 150000, 6000), 6);
+    const auto tree = builders::build(testing::reference_set(boxes), {info.id, {}}, context);
     ASSERT_TRUE(tree);
     ASSERT_FALSE(shares.empty()) << info.id;
     EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end())) << info.id;

@@ -3,6 +3,7 @@
 #include <tbb/global_control.h>
 
 #include "boxwood/builders.h"
+#include "unit/builders/box_count.h"
 #include "unit/builders/reference_shapes.h"
 
 namespace boxwood {
@@ -16,12 +17,8 @@ bool equal_bits(const tree::BinaryTree& a, const tree::BinaryTree& b) {
 
 class BuilderDeterminism : public ::testing::TestWithParam<std::size_t> {
  protected:
-  /// How many boxes to build over: `wanted`, but for builders that say they are slower than n log n only `few`. These
-  /// work in parallel on ranges of more than 4096 references already (kLargeSearch).
   static std::size_t count(std::size_t wanted, std::size_t few) {
-    const std::string_view cost_class = builders::registry()[GetParam()].cost_class;
-    const bool is_quick = cost_class == "O(n)" || cost_class == "O(n log n)";
-    return is_quick ? wanted : few;
+    return testing::box_count(builders::registry()[GetParam()], wanted, few);
   }
 
   void check(const testing::Boxes& boxes, const std::map<std::string, std::string>& settings = {}) {
