@@ -42,7 +42,7 @@ void describe(BuildFigures& figures, const tree::BinaryTree& tree, const Accel& 
 Status build_own(Own& own, const BenchPlan& plan, const Input& input, std::size_t thread_index,
                  BenchExecutors& executors, const Session& session) {
   executors.choose(thread_index);
-  const auto built = build_tree(input.mesh, *own.options, *executors.chosen);
+  const auto built = build_tree(input.mesh, plan.presplit, *own.options, *executors.chosen);
   if (!built) return built.error();
   const bool is_first = own.accels.empty();
   if (is_first) warn_excluded(input, own.options == &plan.builders[0] ? built->excluded : 0, session);
@@ -52,8 +52,7 @@ Status build_own(Own& own, const BenchPlan& plan, const Input& input, std::size_
     auto encoded = encode_tree(input.mesh, built->tree, plan.layouts[i], executors.chosen);
     if (!encoded) return encoded.error();
     BuildFigures& figures = *own.figures[i];
-    figures.milliseconds[thread_index].push_back(
-        1e3 * (built->reference_seconds + built->tree_seconds + encoded->encode_seconds));
+    figures.milliseconds[thread_index].push_back(1e3 * (built->seconds() + encoded->encode_seconds));
     if (is_first) {
       describe(figures, built->tree, encoded->accel, resolved->cost());
       own.accels.push_back(std::make_shared<const Accel>(std::move(encoded->accel)));

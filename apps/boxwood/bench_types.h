@@ -35,6 +35,7 @@ struct RivalChoice {
 /// The checked options of one run.
 struct BenchPlan {
   std::vector<builders::BuildOptions> builders;
+  refs::Presplit presplit;  ///< before every builder
   std::vector<std::string> layouts;
   std::vector<queries::Mode> modes;
   std::vector<RayKind> kinds;

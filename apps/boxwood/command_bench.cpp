@@ -17,10 +17,11 @@ namespace {
 
 struct Options {
   CommonOptions common;
+  InputOptions input_options;
   std::vector<std::string> inputs;
   std::vector<std::string> builders{"all"}, layouts{AccelOptions{}.layout}, modes{"robust"}, rivals, settings;
   std::vector<std::string> kinds{"primary", "random", "diffuse", "occlusion"};
-  std::string camera, size = "1024x1024", table = "full", csv;
+  std::string camera, size = "1024x1024", table = "full", csv, presplit = AccelOptions{}.presplit;
   int repeat = 3;
   std::uint64_t random_rays = 0, seed = 1;
 };
@@ -131,6 +132,9 @@ Result<BenchPlan> make_plan(const Options& options, const Session& session) {
   drop_repeats(plan.modes, std::equal_to<>());
   drop_repeats(plan.kinds, std::equal_to<>());
   drop_repeats(plan.rivals, [](const RivalChoice& a, const RivalChoice& b) { return a.quality == b.quality; });
+  const auto presplit = refs::parse_presplit(options.presplit);
+  if (!presplit) return presplit.error();
+  plan.presplit = *presplit;
   const auto size = parse_size(options.size);
   if (!size) return size.error();
   std::tie(plan.width, plan.height) = *size;
@@ -174,7 +178,7 @@ Result<BenchResult> run_input(const BenchPlan& plan, const Input& input, const S
   if (!contestants) return contestants.error();
   result.contestants = std::move(*contestants);
   executors.choose(plan.thread_counts.size() - 1);
-  auto sets = make_ray_sets(plan, input, result.view, *result.contestants.front().accel, session);
+  auto sets = make_ray_sets(plan, input, input.turned(result.view), *result.contestants.front().accel, session);
   if (!sets) return sets.error();
   result.ray_sets = std::move(*sets);
   for (const RaySet& set : result.ray_sets) {
@@ -193,6 +197,7 @@ Json plan_json(const BenchPlan& plan) {
   for (const auto& build : plan.builders)
     if (const auto resolved = builders::resolve_options(build.builder, build.settings))
       json["builders"][build.builder] = options_json(resolved->echo());
+  json["presplit"] = plan.presplit.text();
   json["layouts"] = plan.layouts;
   json["modes"] = Json::array();
   for (const auto mode : plan.modes) json["modes"].push_back(queries::name(mode));
@@ -222,6 +227,7 @@ void note_plan(const BenchPlan& plan, const std::string& isa, const Session& ses
   for (const auto& build : plan.builders)
     if (const auto resolved = builders::resolve_options(build.builder, build.settings))
       session.note("  {}: {}\n", build.builder, options_line(resolved->echo()));
+  if (!plan.presplit.is_none()) session.note("  pre-split before each: {}\n", plan.presplit.text());
   if (!plan.rivals.empty())
     session.note("  rival: {}, rtcIntersect1 and rtcOccluded1 in a loop; fast = default scene flags, robust = ROBUST\n",
                  plan.rival_version);
@@ -244,7 +250,7 @@ Status run_bench(const Options& options) {
   report["inputs"] = Json::array();
   report["rows"] = Json::array();
   for (const std::string& text : options.inputs) {
-    const auto input = load_usable_input(text, session);
+    const auto input = load_usable_input(text, options.input_options, session);
     if (!input) return input.error();
     const BenchPlan fitted = fitted_plan(*plan, options, *input, session);
     if (fitted.builders.empty())
@@ -298,8 +304,10 @@ void add_bench_command(CLI::App& program, Run& run) {
   auto options = std::make_shared<Options>();
   CLI::App& command = *program.add_subcommand("bench", "Measure builders, layouts and rivals on the same rays");
   command.add_option("INPUT", options->inputs, kInputHelp)->required()->type_name("");
+  options->input_options.add_to(command);
   add_list(command, "-b,--builders", options->builders, "Builder ids, or all (the default)");
   add_settings_option(command, options->settings);
+  add_presplit_option(command, options->presplit);
   add_list(command, "-l,--layouts", options->layouts, "linear, wide4, wide8 (the default), or all");
   add_list(command, "--modes", options->modes, "robust (the default), fast");
   add_list(command, "--rays", options->kinds, "primary, random, diffuse, occlusion (all by default)");

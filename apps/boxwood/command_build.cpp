@@ -1,4 +1,5 @@
 // boxwood build: build, validate, measure.
+#include <algorithm>
 #include <vector>
 
 #include "boxwood/layouts.h"
@@ -17,6 +18,7 @@ namespace {
 struct Options {
   CommonOptions common;
   PipelineOptions pipeline;
+  InputOptions input_options;
   std::string input;
   bool skip_validation = false;
 };
@@ -31,7 +33,7 @@ struct Outcome {
   double cost = 0;
   Status valid;
 
-  double build_seconds() const { return built.reference_seconds + built.tree_seconds + encode_seconds; }
+  double build_seconds() const { return built.seconds() + encode_seconds; }
 };
 
 Status validate(const Input& input, const tree::BinaryTree& tree, const layouts::Layout& layout) {
@@ -47,12 +49,13 @@ Status validate(const Input& input, const tree::BinaryTree& tree, const layouts:
   return layouts::validate(layout, tree.references.span(), tree.splits_references, mesh);
 }
 
-Result<Outcome> build_and_measure(const Options& options, const builders::BuildOptions& build_options,
-                                  const Input& input, const Session& session) {
+Result<Outcome> build_and_measure(const Options& options, const refs::Presplit& presplit,
+                                  const builders::BuildOptions& build_options, const Input& input,
+                                  const Session& session) {
   Outcome outcome;
   Progress progress("building " + build_options.builder, session.shows_progress());
-  auto built =
-      build_tree(input.mesh, build_options, *session.executor(), [&](double share) { progress.update(share); });
+  auto built = build_tree(input.mesh, presplit, build_options, *session.executor(),
+                          [&](double share) { progress.update(share); });
   if (!built) return built.error();
   outcome.built = std::move(*built);
   const tree::BinaryTree& tree = outcome.built.tree;
@@ -79,6 +82,22 @@ Result<Outcome> build_and_measure(const Options& options, const builders::BuildO
 
 using Echo = std::vector<std::pair<std::string, std::string>>;
 
+Json presplit_json(const Echo& echo, const refs::PresplitReport& presplit) {
+  const auto is_presplit = [](const auto& entry) { return entry.first == "presplit"; };
+  Json json;
+  json["method"] = std::find_if(echo.begin(), echo.end(), is_presplit)->second;
+  json["references_before"] = presplit.references_before;
+  json["references_after"] = presplit.references_after;
+  json["area_reduction"] = presplit.area_reduction();
+  json["cuts"] = presplit.splits;
+  json["best_factor"] = presplit.best_factor;
+  json["average_factor"] = presplit.average_factor;
+  json["worst_factor"] = presplit.worst_factor;
+  json["threshold"] = presplit.threshold;
+  json["t"] = presplit.t;
+  return json;
+}
+
 Json build_json(const Options& options, const Session& session, const Input& input, const Echo& echo,
                 const Outcome& outcome) {
   const tree::Statistics& shape = outcome.statistics;
@@ -87,9 +106,11 @@ Json build_json(const Options& options, const Session& session, const Input& inp
   report["options"] = options_json(echo);
   report["builder"] = options.pipeline.builder;
   report["layout"] = options.pipeline.layout;
+  report["presplit"] = presplit_json(echo, outcome.built.presplit);
   report["surface_area_cost"] = outcome.cost;
   report["build_ms"] = 1e3 * outcome.build_seconds();
   report["times_ms"] = {{"references", 1e3 * outcome.built.reference_seconds},
+                        {"presplit", 1e3 * outcome.built.presplit_seconds},
                         {"tree", 1e3 * outcome.built.tree_seconds},
                         {"encode", 1e3 * outcome.encode_seconds}};
   report["nodes"] = shape.nodes;
@@ -111,15 +132,30 @@ Json build_json(const Options& options, const Session& session, const Input& inp
   return report;
 }
 
+/// What went in and came out of the pre-split, and how much box area it saved (Dammertz and Keller 2008, Table 1).
+template <class Line>
+void print_presplit(const Line& line, const refs::PresplitReport& presplit) {
+  const double before = static_cast<double>(std::max<std::size_t>(presplit.references_before, 1));
+  line("presplit",
+       fmt::format("{} references to {} ({:+.2f} %), box area x {:.4f}", with_thousands(presplit.references_before),
+                   with_thousands(presplit.references_after),
+                   100 * (static_cast<double>(presplit.references_after) / before - 1), presplit.area_reduction()));
+  line("", fmt::format("{} cuts; area of a part over the whole: best {:.3f}, average {:.3f}, worst {:.3f}{}",
+                       with_thousands(presplit.splits), presplit.best_factor, presplit.average_factor,
+                       presplit.worst_factor, presplit.t > 0 ? fmt::format("; t = {}", presplit.t) : ""));
+}
+
 void print_build(const Options& options, const Session& session, const Outcome& outcome) {
   const auto line = [&](const char* key, const std::string& value) { session.result("  {:<16} {}\n", key, value); };
   const tree::Statistics& shape = outcome.statistics;
   const double triangles = static_cast<double>(outcome.built.tree.primitive_count);
   session.result("{} -> {}\n", options.pipeline.builder, options.pipeline.layout);
-  line("build", fmt::format("{:.1f} ms: references {:.1f}, tree {:.1f}, encode {:.1f} ({:.2f} Mtriangles/s)",
+  line("build", fmt::format("{:.1f} ms: references {:.1f}, presplit {:.1f}, tree {:.1f}, encode {:.1f} "
+                            "({:.2f} Mtriangles/s)",
                             1e3 * outcome.build_seconds(), 1e3 * outcome.built.reference_seconds,
-                            1e3 * outcome.built.tree_seconds, 1e3 * outcome.encode_seconds,
-                            1e-6 * triangles / outcome.build_seconds()));
+                            1e3 * outcome.built.presplit_seconds, 1e3 * outcome.built.tree_seconds,
+                            1e3 * outcome.encode_seconds, 1e-6 * triangles / outcome.build_seconds()));
+  if (options.pipeline.presplit != "none") print_presplit(line, outcome.built.presplit);
   line("Exp(T)", fmt::format("{:.4f}", outcome.cost));
   line("nodes", fmt::format("{}, {} of them leaves", with_thousands(shape.nodes), with_thousands(shape.leaves)));
   line("references", with_thousands(shape.references));
@@ -139,12 +175,14 @@ Status run_build(const Options& options) {
   if (Status status = check_output_folder(options.common.json); !status) return status;
   const auto build_options = options.pipeline.build_options();
   if (!build_options) return build_options.error();
-  const auto echo = echo_options(*build_options, options.pipeline.layout);
+  const auto presplit = refs::parse_presplit(options.pipeline.presplit);
+  if (!presplit) return presplit.error();
+  const auto echo = echo_options(*build_options, *presplit, options.pipeline.layout);
   if (!echo) return echo.error();
   if (const auto layout = layouts::find(options.pipeline.layout); !layout) return layout.error();
-  const auto input = load_usable_input(options.input, session);
+  const auto input = load_usable_input(options.input, options.input_options, session);
   if (!input) return input.error();
-  const auto outcome = build_and_measure(options, *build_options, *input, session);
+  const auto outcome = build_and_measure(options, *presplit, *build_options, *input, session);
   if (!outcome) return outcome.error();
   session.note("{}\n{}\n{}\n", session.environment_line(outcome->isa), input->line(), options_line(*echo));
   print_build(options, session, *outcome);
@@ -161,6 +199,7 @@ void add_build_command(CLI::App& program, Run& run) {
   auto options = std::make_shared<Options>();
   CLI::App& command = *program.add_subcommand("build", "Build a tree, check it and measure it");
   command.add_option("INPUT", options->input, kInputHelp)->required()->type_name("");
+  options->input_options.add_to(command);
   options->pipeline.add_to(command);
   command.add_flag("--no-validate", options->skip_validation, "Do not check the tree and its layout");
   options->common.add_to(command);

@@ -11,6 +11,7 @@ namespace {
 
 struct Options {
   CommonOptions common;
+  InputOptions input_options;
   std::string input;
 };
 
@@ -77,7 +78,7 @@ void print_info(const Session& session, const Input& input, const mesh::Report& 
 
 Status run_info(const Options& options) {
   const Session session("info", options.common);
-  const auto input = load_input(options.input, session);
+  const auto input = load_input(options.input, options.input_options, session);
   if (!input) return input.error();
   const mesh::Report report = [&] {
     const Progress progress("inspecting " + input->mesh.name, session.shows_progress());
@@ -95,6 +96,7 @@ void add_info_command(CLI::App& program, Run& run) {
   auto options = std::make_shared<Options>();
   CLI::App& command = *program.add_subcommand("info", "Count, measure and check a mesh");
   command.add_option("INPUT", options->input, kInputHelp)->required()->type_name("");
+  options->input_options.add_to(command);
   options->common.add_to(command);
   command.footer("\nExamples:\n  boxwood info bunny.ply\n  boxwood info scene:shells,triangles=5000 --json -");
   command.callback([options, &run] { run = [options] { return run_info(*options); }; });

@@ -15,6 +15,7 @@ namespace {
 struct Options {
   CommonOptions common;
   PipelineOptions pipeline;
+  InputOptions input_options;
   std::string input, output, camera;
   std::string size = "1024x1024";
   std::string shade = "normals";
@@ -29,7 +30,7 @@ Status run_render(const Options& options) {
   const int width = size->first, height = size->second;
   for (const std::string& path : {options.output, options.common.json})
     if (Status status = check_output_folder(path); !status) return status;
-  const auto input = load_usable_input(options.input, session);
+  const auto input = load_usable_input(options.input, options.input_options, session);
   if (!input) return input.error();
   View view = input->view;
   if (!options.camera.empty()) {
@@ -37,13 +38,15 @@ Status run_render(const Options& options) {
     if (!camera) return camera.error();
     view = camera->over(view);
   }
-  const auto pipeline = run_pipeline(*input, options.pipeline, session);
+  std::vector<std::uint8_t> split;
+  const auto pipeline =
+      run_pipeline(*input, options.pipeline, session, *shade == render::Shade::subdivided ? &split : nullptr);
   if (!pipeline) return pipeline.error();
 
   const double start = now();
   auto image = [&] {
     const Progress progress(fmt::format("rendering {}x{}", width, height), session.shows_progress());
-    return render::render(pipeline->accel, view, width, height, *shade);
+    return render::render(pipeline->accel, input->turned(view), width, height, *shade, split);
   }();
   if (!image) return image.error();
   const double seconds = now() - start;
@@ -61,6 +64,7 @@ Status run_render(const Options& options) {
   report["options"]["size"] = options.size;
   report["camera"] = camera_text(view);
   report["excluded"] = pipeline->excluded;
+  report["references"] = pipeline->accel.reference_count();
   report["build_ms"] = 1e3 * pipeline->build_seconds;
   report["primary_rays"] = rays;
   report["render_ms"] = 1e3 * seconds;
@@ -75,8 +79,9 @@ void add_render_command(CLI::App& program, Run& run) {
   auto options = std::make_shared<Options>();
   CLI::App& command = *program.add_subcommand("render", "Draw a mesh, or a heat map of what its rays cost, as PNG");
   command.add_option("INPUT", options->input, kInputHelp)->required()->type_name("");
+  options->input_options.add_to(command);
   command.add_option("-o,--output", options->output, "Picture to write")->type_name("OUT.png")->required();
-  command.add_option("--shade", options->shade, "normals, ao, depth, nodes, primitives or ids")
+  command.add_option("--shade", options->shade, "normals, ao, depth, nodes, primitives, ids or subdivided")
       ->type_name("NAME")
       ->capture_default_str();
   add_size_option(command, options->size);
@@ -87,6 +92,7 @@ void add_render_command(CLI::App& program, Run& run) {
       "\nExamples:\n"
       "  boxwood render bunny.ply -o bunny.png --shade ao\n"
       "  boxwood render scene:atrium -o visits.png --shade nodes --size 1280x720 --builder lbvh\n"
+      "  boxwood render scene:spaceship -o split.png --shade subdivided --presplit evh:t=14\n"
       "  boxwood render bunny.ply -o left.png --camera eye=-1:0.2:0,look_at=0:0.1:0,fov=30");
   command.callback([options, &run] { run = [options] { return run_render(*options); }; });
 }

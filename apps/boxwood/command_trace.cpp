@@ -17,6 +17,7 @@ namespace {
 struct Options {
   CommonOptions common;
   PipelineOptions pipeline;
+  InputOptions input_options;
   std::string input, rays, output;
   std::string query = "closest";
   std::string mode = "robust";
@@ -91,7 +92,7 @@ Status run_trace(const Options& options) {
   const auto rays = io::read_rays(options.rays);
   if (!rays) return rays.error();
   if (Status status = check_rays(options.rays, *rays); !status) return status;
-  const auto input = load_usable_input(options.input, session);
+  const auto input = load_usable_input(options.input, options.input_options, session);
   if (!input) return input.error();
   const auto pipeline = run_pipeline(*input, options.pipeline, session);
   if (!pipeline) return pipeline.error();
@@ -111,6 +112,7 @@ Status run_trace(const Options& options) {
   report["options"]["query"] = options.query;
   report["options"]["mode"] = options.mode;
   report["excluded"] = pipeline->excluded;
+  report["references"] = pipeline->accel.reference_count();
   report["build_ms"] = 1e3 * pipeline->build_seconds;
   report["rays_file"] = options.rays;
   report["rays"] = rays->size();
@@ -128,6 +130,7 @@ void add_trace_command(CLI::App& program, Run& run) {
   auto options = std::make_shared<Options>();
   CLI::App& command = *program.add_subcommand("trace", "Trace rays from a NumPy file, write the hits to another");
   command.add_option("INPUT", options->input, kInputHelp)->required()->type_name("");
+  options->input_options.add_to(command);
   command.add_option("-r,--rays", options->rays, "float32 array, (N,6) ox oy oz dx dy dz or (N,8) with tmin tmax")
       ->type_name("RAYS.npy")
       ->required();

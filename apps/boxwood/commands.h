@@ -11,9 +11,11 @@ namespace boxwood::program {
 using Run = std::function<Status()>;
 
 void add_builders_command(CLI::App& program, Run& run);
+void add_presplits_command(CLI::App& program, Run& run);
 void add_scenes_command(CLI::App& program, Run& run);
 void add_info_command(CLI::App& program, Run& run);
 void add_build_command(CLI::App& program, Run& run);
+void add_subdivide_command(CLI::App& program, Run& run);
 void add_trace_command(CLI::App& program, Run& run);
 void add_bench_command(CLI::App& program, Run& run);
 void add_render_command(CLI::App& program, Run& run);

@@ -28,9 +28,13 @@ Result<mesh::SceneOptions> parse_scene_options(const std::vector<std::string>& p
       auto rotate = parse_vector(value, key);
       if (!rotate) return rotate.error();
       options.rotate = *rotate;
+    } else if (key == "outlier" || key == "spike") {
+      auto distance = parse_number(value, key);
+      if (!distance) return distance.error();
+      (key == "outlier" ? options.outlier : options.spike) = *distance;
     } else {
       return {ErrorCode::unknown_name,
-              fmt::format("a scene has no option '{}'; it has triangles, seed and rotate", key)};
+              fmt::format("a scene has no option '{}'; it has triangles, seed, rotate, outlier and spike", key)};
     }
   }
   return options;
@@ -73,19 +77,32 @@ Json Input::json() const {
   if (is_scene) {
     json["seed"] = scene.seed;
     json["rotate"] = {scene.rotate.x, scene.rotate.y, scene.rotate.z};
+    if (scene.outlier > 0) json["outlier"] = scene.outlier;
+    if (scene.spike > 0) json["spike"] = scene.spike;
   } else {
     json["keeps_file_order"] = keeps_file_order;
   }
+  if (rotation != Vec3{}) json["turned"] = {rotation.x, rotation.y, rotation.z};
   return json;
 }
 
 std::string Input::line() const {
   const std::string seed = is_scene ? fmt::format(", seed {}", scene.seed) : "";
-  return fmt::format("{}: {} triangles, {} vertices{}, hash {}", mesh.name, with_thousands(mesh.triangles.size()),
-                     with_thousands(mesh.vertices.size()), seed, hash_text(hash));
+  const std::string turn = rotation == Vec3{} ? "" : fmt::format(", turned by {}", vector_text(rotation));
+  return fmt::format("{}: {} triangles, {} vertices{}{}, hash {}", mesh.name, with_thousands(mesh.triangles.size()),
+                     with_thousands(mesh.vertices.size()), seed, turn, hash_text(hash));
 }
 
-Result<Input> load_input(const std::string& text, const Session& session) {
+void InputOptions::add_to(CLI::App& command) {
+  command.add_option("--rotate", rotate, "Turn INPUT, and the camera with it, by degrees about x, then y, then z")
+      ->type_name("X:Y:Z")
+      ->check([](const std::string& text) {
+        const auto parsed = parse_vector(text, "the rotation");
+        return parsed ? std::string() : parsed.error().message;
+      });
+}
+
+Result<Input> load_input(const std::string& text, const InputOptions& options, const Session& session) {
   Input input;
   input.text = text;
   const Progress progress("reading " + text, session.shows_progress());
@@ -98,13 +115,21 @@ Result<Input> load_input(const std::string& text, const Session& session) {
   if (const Status checked = mesh::check_indices(input.mesh, executor); !checked)
     return Error{checked.error().code, text + ": " + checked.error().message};
   input.bounds = mesh::bounds(input.mesh, executor);
-  input.hash = mesh::hash(input.mesh, executor);
   if (!input.is_scene && !input.bounds.is_empty()) input.view = mesh::view_from_bounds(input.bounds);
+  if (!options.rotate.empty() && !input.bounds.is_empty()) {
+    const auto rotation = parse_vector(options.rotate, "the rotation");
+    if (!rotation) return rotation.error();
+    input.rotation = *rotation;
+    input.rotation_center = input.bounds.center();
+    mesh::rotate(input.mesh, input.rotation, input.rotation_center);
+    input.bounds = mesh::bounds(input.mesh, executor);
+  }
+  input.hash = mesh::hash(input.mesh, executor);
   return input;
 }
 
-Result<Input> load_usable_input(const std::string& text, const Session& session) {
-  auto input = load_input(text, session);
+Result<Input> load_usable_input(const std::string& text, const InputOptions& options, const Session& session) {
+  auto input = load_input(text, options, session);
   if (input && input->bounds.is_empty())
     return {ErrorCode::malformed, fmt::format("{} has no usable triangle: all {} reach a coordinate that is NaN, "
                                               "infinite or beyond {}",

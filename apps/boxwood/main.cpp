@@ -25,7 +25,7 @@ Examples:
   boxwood render scene:city -o city.png --size 1280x720 --shade ao
   boxwood trace bunny.ply --rays rays.npy -o hits.npy --json -
 
-INPUT is a mesh file (PLY, OBJ, STL, glTF, ...) or a procedural scene, scene:NAME[,triangles=N][,seed=S][,rotate=X:Y:Z].
+INPUT is a mesh file (PLY, OBJ, STL, glTF, ...) or a procedural scene, scene:NAME[,triangles=N][,seed=S][,rotate=X:Y:Z]....
 The environment variable BOXWOOD_ISA forces an instruction set: avx512, avx2, sse4 or scalar.
 )";
 
@@ -56,9 +56,11 @@ int run_program(int argc, char** argv) {
   app.footer(kExamples);
   program::Run run;
   program::add_builders_command(app, run);
+  program::add_presplits_command(app, run);
   program::add_scenes_command(app, run);
   program::add_info_command(app, run);
   program::add_build_command(app, run);
+  program::add_subdivide_command(app, run);
   program::add_trace_command(app, run);
   program::add_bench_command(app, run);
   program::add_render_command(app, run);

@@ -12,15 +12,19 @@
 
 namespace boxwood::program {
 
-/// --builder, --set and --layout.
+/// --presplit, --builder, --set and --layout.
 struct PipelineOptions {
   std::string builder = builders::BuildOptions{}.builder;
   std::vector<std::string> settings;  ///< key=value
   std::string layout = AccelOptions{}.layout;
+  std::string presplit = AccelOptions{}.presplit;
 
   void add_to(CLI::App& command);
   Result<builders::BuildOptions> build_options() const;
 };
+
+/// --presplit; refuses what can't be read as wrong usage, before anything runs.
+void add_presplit_option(CLI::App& command, std::string& presplit);
 
 /// Makes --set take one key=value each time it is given.
 void add_settings_option(CLI::App& command, std::vector<std::string>& settings);
@@ -28,12 +32,18 @@ void add_settings_option(CLI::App& command, std::vector<std::string>& settings);
 struct BuiltTree {
   tree::BinaryTree tree;
   std::size_t excluded = 0;
-  double reference_seconds = 0, tree_seconds = 0;
+  refs::PresplitReport presplit;
+  double reference_seconds = 0, presplit_seconds = 0, tree_seconds = 0;
+
+  double seconds() const { return reference_seconds + presplit_seconds + tree_seconds; }
 };
 
-/// References, then the tree.
-Result<BuiltTree> build_tree(const MeshView& mesh, const builders::BuildOptions& options, Executor& executor,
-                             const std::function<void(double)>& progress = {});
+/// References, their pre-split, then the tree. `split`, if any, gets a 1 for each primitive that now has several
+/// references, by the pre-split or by the builder, and a 0 for the others.
+Result<BuiltTree> build_tree(const MeshView& mesh, const refs::Presplit& presplit,
+                             const builders::BuildOptions& options, Executor& executor,
+                             const std::function<void(double)>& progress = {},
+                             std::vector<std::uint8_t>* split = nullptr);
 
 struct BuiltAccel {
   Accel accel;
@@ -46,14 +56,17 @@ Result<BuiltAccel> encode_tree(const MeshView& mesh, const tree::BinaryTree& tre
 struct Pipeline {
   Accel accel;
   std::size_t excluded = 0;
+  refs::PresplitReport presplit;
   double build_seconds = 0;
   std::vector<std::pair<std::string, std::string>> echo;  ///< resolved options, builder and layout first
 };
-/// Builds with a progress bar; warns about excluded triangles; notes what it did.
-Result<Pipeline> run_pipeline(const Input& input, const PipelineOptions& options, const Session& session);
+/// Builds with a progress bar; warns about excluded triangles; notes what it did. `split` as for build_tree.
+Result<Pipeline> run_pipeline(const Input& input, const PipelineOptions& options, const Session& session,
+                              std::vector<std::uint8_t>* split = nullptr);
 
-/// The resolved options with the builder, and the layout if any, in front: what reports echo.
+/// The resolved options with builder, pre-split and layout in front: what reports echo.
 Result<std::vector<std::pair<std::string, std::string>>> echo_options(const builders::BuildOptions& options,
+                                                                      const refs::Presplit& presplit,
                                                                       const std::string& layout);
 
 }  // namespace boxwood::program

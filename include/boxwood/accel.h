@@ -15,6 +15,7 @@ namespace boxwood {
 
 struct AccelOptions {
   builders::BuildOptions build = {};  ///< builder id and its settings
+  std::string presplit = "none";      ///< how to split references first: what refs::parse_presplit reads
   std::string layout = "wide8";       ///< linear, wide4 or wide8
   std::string isa = {};               ///< empty = environment variable BOXWOOD_ISA, or the best the processor has
   /// Runs the build and later the batch queries. Null = a pool of its own over all processors.
@@ -35,10 +36,10 @@ struct SurfaceHit : Hit {
 ///     boxwood::Hit hit = accel->closest_hit({.origin = {0, 0, 5}, .direction = {0, 0, -1}});
 class Accel {
  public:
-  /// Errors: what refs::make_references, builders::build and layouts::encode refuse; an unknown layout or ISA. An empty
-  /// mesh gives an Accel that every ray misses.
+  /// Errors: what refs::make_references, refs::parse_presplit, refs::apply_presplit, builders::build and
+  /// layouts::encode refuse; an unknown layout or ISA. An empty mesh gives an Accel that every ray misses.
   static Result<Accel> build(const MeshView& mesh, const AccelOptions& options = {});
-  /// From a tree built before over the same mesh; `options.build` is not looked at.
+  /// From a tree built before over the same mesh; `options.build` and `presplit` are not looked at.
   static Result<Accel> from_tree(const MeshView& mesh, const tree::BinaryTree& tree, const AccelOptions& options = {});
 
   Accel(Accel&&) noexcept;

@@ -91,15 +91,25 @@ Report inspect(const MeshView& mesh, Executor& executor);
 /// For each vertex the first vertex with exactly the same position (-0 equals +0); non-finite positions stay alone.
 std::vector<std::uint32_t> weld(const MeshView& mesh, Executor& executor);
 
+/// Turns all vertices by degrees about x, then y, then z through `center`. Calculated in double precision; whole turns
+/// change nothing, quarter turns round each coordinate once. Requires finite degrees and centre.
+void rotate(TriangleMesh& mesh, Vec3 degrees, Vec3 center);
+/// The view that sees of the turned mesh what `view` sees of the mesh.
+View rotate(const View& view, Vec3 degrees, Vec3 center);
+
 // ---- Procedural scenes -------------------------------------------------------------------------------------------
 
 /// How to make a scene. `triangles` is a target from 12 to 20 million: the scene comes as near to it as its
 /// structure allows and never above 1.1 times it; `seed` moves its random choices; `rotate` turns the whole scene about
-/// its centre by degrees around x, then y, then z (the view turns with it).
+/// its centre by degrees around x, then y, then z (the view turns with it). Two defects that real files have come last,
+/// on top of `triangles` and after `rotate`: `outlier` adds a tiny triangle that many diagonals of the scene's box
+/// away, `spike` a triangle of the scene's middle one of whose vertices is that far off; the view stays as it was.
 struct SceneOptions {
   std::size_t triangles = 0;  ///< 0 = the scene's own default
   std::uint64_t seed = 1;
   Vec3 rotate{};
+  float outlier = 0;  ///< 0 = none; up to 1e9
+  float spike = 0;    ///< 0 = none; up to 1e9
 };
 
 struct Scene {
@@ -120,7 +130,8 @@ struct SceneInfo {
 std::span<const SceneInfo> scenes();
 
 /// Makes a scene by id. The same options give the same bits on every machine of this architecture. Errors: unknown id
-/// (the sentence lists what there is), triangles outside 12 to 20 million, rotation not finite.
+/// (the sentence lists what there is), triangles outside 12 to 20 million, rotation not finite, outlier or spike
+/// outside 0 to 1e9.
 Result<Scene> make_scene(std::string_view id, const SceneOptions& options = {});
 
 /// A view that shows a whole mesh: from outside, slightly above, the long side across, 40 degrees.

@@ -3,6 +3,10 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "boxwood/base.h"
 #include "boxwood/math.h"
@@ -37,6 +41,10 @@ class Primitives {
   /// Both boxes are rounded outwards, lie in the reference's box and together hold all of it; one of them is empty when
   /// nothing lies on its side.
   virtual void cut(const Reference& reference, int axis, float position, Box& left, Box& right) const = 0;
+  /// Boxes of what several planes at increasing positions inside the reference's box make of it: parts[i] lies below
+  /// positions[i], the last one above all; empty where there is nothing. For pricing splits: not rounded outwards.
+  virtual void chop(const Reference& reference, int axis, std::span<const float> positions,
+                    std::span<Box> parts) const = 0;
 };
 
 /// The primitives of a triangle mesh. Reads the mesh's arrays, which must outlive it. Only usable triangles may be
@@ -58,5 +66,83 @@ struct ReferenceSet {
 /// set's `primitives` read the mesh, which must outlive the set.
 /// Errors: what mesh::check_indices refuses, out of memory.
 Result<ReferenceSet> make_references(const MeshView& mesh, Executor& executor);
+
+// ---- Pre-splits: several tight references in place of one loose one, before any builder looks at them --------------
+
+/// One option of a pre-split, a number from `lowest` to `highest`.
+struct PresplitOption {
+  const char* key;          ///< "t"
+  const char* description;  ///< one line
+  double default_value = 0, lowest = 0, highest = 0;
+};
+
+struct Presplit;
+
+/// What a pre-split did. Areas are of boxes of references, in square units of the mesh.
+struct PresplitReport {
+  std::size_t references_before = 0, references_after = 0;
+  double area_before = 0, area_after = 0;  ///< sums over all references
+  std::size_t splits = 0;                  ///< cuts in two
+  /// Area of a part's box over that of the box it was cut from, over both parts of all splits (Dammertz and Keller
+  /// 2008, Table 1); 1 when nothing was split.
+  double best_factor = 1, average_factor = 1, worst_factor = 1;
+  double threshold = 0;  ///< what a part's measure was held against: a volume (evh) or an area (esc)
+  double t = 0;          ///< evh: log2 of the scene's volume over the threshold, given or found; else 0
+
+  /// Sum of the areas after over the sum before; 1 when there was no area.
+  double area_reduction() const { return area_before > 0 ? area_after / area_before : 1; }
+};
+
+/// One row of the registry of pre-splits.
+struct PresplitInfo {
+  const char* id;       ///< "evh", or with a variant "evh:auto"
+  const char* summary;  ///< one line: what is split where
+  const char* paper;    ///< bib key(s) in docs/references.bib, or what it departs from
+  std::span<const PresplitOption> options;
+  bool subdivides;  ///< splits edges alike on both sides, so that `subdivide` can do it
+  /// Replaces references by their parts. Null: leaves everything as it is.
+  Status (*apply)(ReferenceSet& set, const MeshView& mesh, const Presplit& presplit, Executor& executor,
+                  PresplitReport& report);
+};
+
+/// All pre-splits, in the order they are listed to people; the first is `none`.
+std::span<const PresplitInfo> presplits();
+
+/// A pre-split with a value for each of its options. The default is `none`.
+struct Presplit {
+  Presplit();
+  const PresplitInfo* info;    ///< never null
+  std::vector<double> values;  ///< in the order of info->options
+
+  bool is_none() const { return info->apply == nullptr; }
+  double value(std::string_view key) const;  ///< the key must exist
+  /// What parse_presplit reads, every option with its value: "evh:t=14", "evh:auto,budget=1.3".
+  std::string text() const;
+};
+
+/// Reads "none", "evh", "evh:t=14", "evh:auto,budget=1.2", "esc:k=100": an id of the registry, then options after the
+/// first colon or comma. Errors name the value and list what there is.
+Result<Presplit> parse_presplit(std::string_view text);
+
+/// Splits references that are one per primitive, as make_references leaves them; the parts stand where the whole stood.
+/// Every part of a triangle lies in at least one of its references. Parallel, the same bits for every executor.
+/// `report`, if any, is filled in. Errors: more than 2^31 - 1 references, out of memory.
+Result<ReferenceSet> apply_presplit(ReferenceSet&& set, const MeshView& mesh, const Presplit& presplit,
+                                    Executor& executor, PresplitReport* report = nullptr);
+
+/// A mesh whose triangles are cut where a pre-split would cut them, for ray tracers that take triangles only.
+struct Subdivision {
+  TriangleMesh mesh;          ///< usable triangles only; the old vertices first, then the midpoints, each position once
+  std::size_t midpoints = 0;  ///< vertices added
+  std::size_t split = 0;      ///< triangles that were cut
+  std::size_t left_out = 0;   ///< triangles that are not finite
+  std::size_t open_edges_before = 0;    ///< edges (by position) of one triangle only
+  std::size_t open_edges_expected = 0;  ///< pieces those were cut into
+  std::size_t open_edges_after = 0;     ///< more than expected would be T-junctions
+};
+/// Cuts every edge at the same midpoints on all its triangles, so that what was closed stays closed. Parallel,
+/// deterministic. Errors: a pre-split that does not subdivide, more than 2^31 - 1 triangles, what make_references
+/// refuses, out of memory.
+Result<Subdivision> subdivide(const MeshView& mesh, const Presplit& presplit, Executor& executor);
 
 }  // namespace boxwood::refs

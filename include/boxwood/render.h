@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -39,11 +40,13 @@ std::uint64_t hash(std::span<const Ray> rays);
 /// `normals`: shaded by the angle to the viewer, tinted by the normal. `ao`: ambient occlusion, 16 rays a pixel,
 /// smoothed over neighbours on the same surface. `depth`: nearer is lighter. `nodes`, `primitives`: heat map of visits
 /// or triangle tests per primary ray, with a colour scale and its numbers drawn into the picture. `ids`: a colour per
-/// triangle.
-enum class Shade { normals, ao, depth, nodes, primitives, ids };
+/// triangle. `subdivided`: like `normals`, with the marked triangles in red (Dammertz and Keller 2008, Figure 3).
+enum class Shade { normals, ao, depth, nodes, primitives, ids, subdivided };
 Result<Shade> find_shade(std::string_view name);
 
-/// Traces one primary ray a pixel on the accel's executor. Errors: those of primary_rays.
-Result<Image> render(const Accel& accel, const View& view, int width, int height, Shade shade);
+/// Traces one primary ray a pixel on the accel's executor. `marked` is for `subdivided`, one value per primitive id,
+/// anything but 0 is red; ids past its end are not marked. Errors: those of primary_rays.
+Result<Image> render(const Accel& accel, const View& view, int width, int height, Shade shade,
+                     std::span<const std::uint8_t> marked = {});
 
 }  // namespace boxwood::render

@@ -1,4 +1,5 @@
-// Accel runs the pipeline: mesh -> references -> builder -> (wide tree) -> layout, and hands rays to its kernels.
+// Accel runs the pipeline: mesh -> references (pre-split) -> builder -> (wide tree) -> layout, and hands rays to its
+// kernels.
 #include "boxwood/accel.h"
 
 #include "boxwood/metrics.h"
@@ -53,9 +54,13 @@ Result<Accel> Accel::build(const MeshView& mesh, const AccelOptions& options) {
     // Fail on a misspelt option before the work, not after it.
     if (auto layout = layouts::find(options.layout); !layout) return layout.error();
     if (auto isa = queries::choose_isa(options.isa); !isa) return isa.error();
+    const auto presplit = refs::parse_presplit(options.presplit);
+    if (!presplit) return presplit.error();
     auto references = refs::make_references(mesh, *resolved.executor);
     if (!references) return references.error();
     const std::size_t excluded = references->excluded;
+    references = refs::apply_presplit(std::move(*references), mesh, *presplit, *resolved.executor);
+    if (!references) return references.error();
     auto tree = builders::build(std::move(*references), options.build, {*resolved.executor});
     if (!tree) return tree.error();
     auto accel = from_tree(mesh, *tree, resolved);

@@ -5,7 +5,8 @@
 #include "boxwood/builders.h"
 
 // In the order they are listed to people. A row is the id with '_' for '-'.
-#define BOXWOOD_BUILDER_LIST(row) row(binned_sah) row(sweep_sah) row(middle) row(equal_counts) row(lbvh) row(hlbvh)
+#define BOXWOOD_BUILDER_LIST(row) \
+  row(binned_sah) row(sweep_sah) row(middle) row(equal_counts) row(lbvh) row(hlbvh) row(spatial_split) row(sbvh) row(kd)
 
 namespace boxwood::builders {
 

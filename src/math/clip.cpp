@@ -3,20 +3,9 @@
 #include <algorithm>
 #include <cassert>
 
+#include "math/rounding.h"
+
 namespace boxwood {
-namespace {
-
-/// The largest float that is not above x, and the smallest that is not below it.
-float round_down(double x) {
-  const float f = static_cast<float>(x);
-  return static_cast<double>(f) > x ? std::nextafter(f, -kInfinity) : f;
-}
-float round_up(double x) {
-  const float f = static_cast<float>(x);
-  return static_cast<double>(f) < x ? std::nextafter(f, kInfinity) : f;
-}
-
-}  // namespace
 
 ConvexPolygon::ConvexPolygon(const Triangle& triangle) {
   const Vec3* const vertices[] = {&triangle.v0, &triangle.v1, &triangle.v2};
@@ -53,7 +42,7 @@ void ConvexPolygon::clip(int axis, float position, bool upper) {
     cut[a] = plane;
     assert(count < kMostCorners);
   }
-  corners_ = kept;
+  std::copy_n(kept.begin(), count, corners_.begin());
   size_ = count;
 }
 
@@ -61,6 +50,33 @@ void ConvexPolygon::clip(const Box& box) {
   for (int axis = 0; axis < 3 && size_ > 0; ++axis) {
     clip(axis, box.lower[axis], false);
     clip(axis, box.upper[axis], true);
+  }
+}
+
+void ConvexPolygon::chop(int axis, std::span<const float> positions, std::span<Box> parts) const {
+  const auto a = static_cast<std::size_t>(axis);
+  for (Box& part : parts) part = {};
+  const auto grow = [&](std::size_t part, const Point& p) {
+    parts[part].grow(Vec3{static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
+  };
+  const auto slab = [&](double x) {
+    return static_cast<std::size_t>(std::upper_bound(positions.begin(), positions.end(), x) - positions.begin());
+  };
+  for (int i = 0; i < size_; ++i) {
+    const Point& from = corners_[static_cast<std::size_t>(i)];
+    const Point& to = corners_[static_cast<std::size_t>(i + 1 == size_ ? 0 : i + 1)];
+    const bool rises = from[a] < to[a];
+    const Point &low = rises ? from : to, &high = rises ? to : from;
+    std::size_t part = slab(low[a]);
+    grow(part, low);
+    for (; part < positions.size() && positions[part] < high[a]; ++part) {
+      const double share = (positions[part] - low[a]) / (high[a] - low[a]);
+      Point crossing;
+      for (std::size_t k = 0; k < 3; ++k) crossing[k] = low[k] + share * (high[k] - low[k]);
+      crossing[a] = positions[part];
+      grow(part, crossing), grow(part + 1, crossing);
+    }
+    grow(part, high);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <limits>
+#include <span>
 
 #include "boxwood/math.h"
 
@@ -21,6 +22,9 @@ class ConvexPolygon {
   void clip(int axis, float position, bool upper);
   /// Keeps the part inside the box.
   void clip(const Box& box);
+  /// Boxes of the parts between planes on one axis at increasing positions: parts[i] lies below positions[i], the last
+  /// one above all. Rounded to nearest, so for estimates only.
+  void chop(int axis, std::span<const float> positions, std::span<Box> parts) const;
   /// A box in single precision that holds the exact polygon; empty when there is no corner.
   Box bounds() const;
 

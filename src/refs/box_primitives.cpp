@@ -13,6 +13,15 @@ class BoxPrimitives final : public Primitives {
     left = right = reference.box();
     left.upper[axis] = right.lower[axis] = position;
   }
+
+  void chop(const Reference& reference, int axis, std::span<const float> positions,
+            std::span<Box> parts) const override {
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      parts[i] = reference.box();
+      if (i > 0) parts[i].lower[axis] = positions[i - 1];
+      if (i < positions.size()) parts[i].upper[axis] = positions[i];
+    }
+  }
 };
 
 }  // namespace

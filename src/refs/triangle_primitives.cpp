@@ -38,6 +38,16 @@ class TrianglePrimitives final : public Primitives {
     right = intersection(intersection(upper_part.bounds(), whole), part.is_empty() ? box : above);
   }
 
+  void chop(const Reference& reference, int axis, std::span<const float> positions,
+            std::span<Box> parts) const override {
+    const Triangle triangle = mesh_.triangle(reference.primitive);
+    const Box box = reference.box();
+    ConvexPolygon part(triangle);
+    if (!box.contains(triangle.bounds())) part.clip(box);
+    part.chop(axis, positions, parts);
+    for (Box& one : parts) one = intersection(one, box);
+  }
+
  private:
   MeshView mesh_;
 };

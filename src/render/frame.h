@@ -1,6 +1,7 @@
 // What a picture is made of, and the loop over its pixels in batches of bounded memory.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "boxwood/accel.h"
@@ -12,6 +13,9 @@ namespace boxwood::render {
 struct Frame {
   const Accel& accel;
   Camera camera;
+  std::span<const std::uint8_t> marked = {};  ///< by primitive id; empty but for Shade::subdivided
+
+  bool is_marked(std::uint32_t primitive) const { return primitive < marked.size() && marked[primitive] != 0; }
 };
 
 /// Pixels handled by one piece of parallel work.
@@ -44,6 +48,7 @@ void for_each_index(Executor& executor, std::size_t count, const F& f) {
 }
 
 // The shades. Each fills all pixels of an image that has the camera's size.
+/// Shade::normals and Shade::subdivided.
 Status shade_normals(const Frame& frame, Image& image);
 Status shade_ids(const Frame& frame, Image& image);
 Status shade_depth(const Frame& frame, Image& image);

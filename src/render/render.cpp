@@ -11,13 +11,14 @@ struct ShadeName {
   Shade shade;
   std::string_view name;
 };
-constexpr ShadeName kShades[] = {{Shade::normals, "normals"},       {Shade::ao, "ao"},
-                                 {Shade::depth, "depth"},           {Shade::nodes, "nodes"},
-                                 {Shade::primitives, "primitives"}, {Shade::ids, "ids"}};
+constexpr ShadeName kShades[] = {
+    {Shade::normals, "normals"},       {Shade::ao, "ao"},   {Shade::depth, "depth"},          {Shade::nodes, "nodes"},
+    {Shade::primitives, "primitives"}, {Shade::ids, "ids"}, {Shade::subdivided, "subdivided"}};
 
 Status draw(const Frame& frame, Shade shade, Image& image) {
   switch (shade) {
     case Shade::normals:
+    case Shade::subdivided:
       return shade_normals(frame, image);
     case Shade::ao:
       return shade_occlusion(frame, image);
@@ -43,10 +44,11 @@ Result<Shade> find_shade(std::string_view name) {
   return {ErrorCode::unknown_name, "unknown shade \"" + std::string(name) + "\"; there are " + names};
 }
 
-Result<Image> render(const Accel& accel, const View& view, int width, int height, Shade shade) try {
+Result<Image> render(const Accel& accel, const View& view, int width, int height, Shade shade,
+                     std::span<const std::uint8_t> marked) try {
   auto camera = Camera::make(view, width, height);
   if (!camera) return camera.error();
-  const Frame frame{accel, *camera};
+  const Frame frame{accel, *camera, shade == Shade::subdivided ? marked : std::span<const std::uint8_t>{}};
   Image image{.width = width, .height = height, .rgb = std::vector<std::uint8_t>(3 * camera->pixel_count())};
   if (auto drawn = draw(frame, shade, image); !drawn) return drawn.error();
   return image;

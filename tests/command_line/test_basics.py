@@ -7,7 +7,7 @@ import unittest
 
 from support import PROGRAM, CommandLineTest
 
-COMMANDS = ["builders", "scenes", "info", "build", "trace", "bench", "render"]
+COMMANDS = ["builders", "presplits", "scenes", "info", "build", "subdivide", "trace", "bench", "render"]
 
 
 class Basics(CommandLineTest):

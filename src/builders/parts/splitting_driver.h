@@ -25,6 +25,7 @@ namespace boxwood::builders {
 struct SplittingRange {
   std::vector<refs::Reference> references;
   Box bounds;               ///< of all references
+  Box cell;                 ///< the part of space it stands for, for finders that part space; others leave it alone
   std::uint64_t spare = 0;  ///< references that may be added below (reference_budget.h)
   std::uint32_t depth = 0;  ///< of its node; the root's is 0
   double share = 1;         ///< of the whole work, for progress
@@ -48,6 +49,7 @@ class SplittingDriver {
     std::vector<SplittingRange> large(1);
     large[0].references.assign(set.references.begin(), set.references.end());
     large[0].measure();
+    large[0].cell = large[0].bounds;
     large[0].spare = spare;
     set.references = {};
     top_.push_back({large[0].bounds, 0, 0});
@@ -149,6 +151,7 @@ class SplittingDriver {
     right.references.assign(mid, all.end());
     left.measure();
     right.measure();
+    left.cell = right.cell = range.cell;
     const SpareShares shares = share_rest(range.spare, all.size(), left.size(), right.size());
     left.spare = shares.left, right.spare = shares.right;
   }
@@ -180,7 +183,15 @@ class SplittingDriver {
         for (const refs::Reference& reference : range.references) out.ids.push_back(reference.primitive);
       }
     }
+    refit(out.nodes);
     return out;
+  }
+
+  /// Parts are boxed tighter than what they were cut from, so an inner box may have become larger than its children
+  /// together. Children stand behind their parents.
+  static void refit(std::vector<tree::Node>& nodes) {
+    for (std::size_t i = nodes.size(); i-- > 0;)
+      if (!nodes[i].is_leaf()) nodes[i].bounds = merge(nodes[nodes[i].first].bounds, nodes[nodes[i].first + 1].bounds);
   }
 
   Result<tree::BinaryTree> join(std::vector<Subtree>& subtrees, const std::vector<std::uint32_t>& slots,
@@ -208,6 +219,7 @@ class SplittingDriver {
       ids.insert(ids.end(), subtrees[i].ids.begin(), subtrees[i].ids.end());
       subtrees[i] = {};
     }
+    refit(top_);
     return tree::canonicalize(top_, ids, primitive_count, true, executor_);
   }
 
@@ -216,5 +228,18 @@ class SplittingDriver {
   BuildMonitor monitor_;
   std::vector<tree::Node> top_;
 };
+
+/// The `build` function of a builder that splits, from its finder, which is made with the primitives, the box of all
+/// references and the options.
+template <class Finder>
+Result<tree::BinaryTree> build_with_splits(refs::ReferenceSet&& set, const OptionValues& options,
+                                           const BuildContext& context) {
+  const std::shared_ptr<const refs::Primitives> primitives = set.primitives;
+  Box bounds;
+  for (const refs::Reference& reference : set.references) bounds.grow(reference.box());
+  Finder finder(*primitives, bounds, options);
+  const std::uint64_t spare = spare_references(set.references.size(), options.number(kGrowth));
+  return SplittingDriver<Finder>(finder, context).run(std::move(set), spare);
+}
 
 }  // namespace boxwood::builders

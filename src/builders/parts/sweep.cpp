@@ -6,20 +6,13 @@
 #include <algorithm>
 
 #include "builders/parts/area_scale.h"
+#include "builders/parts/ordered_bits.h"
 #include "builders/parts/radix_sort.h"
 
 namespace boxwood::builders {
 namespace {
 
 using refs::Reference;
-
-/// Integers in the order of the floats; both zeros are one.
-std::uint32_t ordered_bits(float x) {
-  x += 0.0f;
-  std::uint32_t bits;
-  std::memcpy(&bits, &x, 4);
-  return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
-}
 
 using Keys = AlignedBuffer<KeyedIndex>;
 

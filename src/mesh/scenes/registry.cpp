@@ -1,6 +1,4 @@
 // The list of scenes, and what they have in common: checks, rotation, name.
-#include <cmath>
-
 #include "boxwood/mesh.h"
 #include "mesh/scenes/scene_list.h"
 
@@ -8,6 +6,7 @@ namespace boxwood::mesh {
 namespace {
 
 constexpr std::size_t kFewest = 12, kMost = 20'000'000;
+constexpr float kFarthest = 1e9f;  // an outlier of 1e9 diagonals is still well within what a mesh may have
 
 constexpr SceneInfo kScenes[] = {
     {"organic",
@@ -27,66 +26,39 @@ constexpr SceneInfo kScenes[] = {
      "worst case for every paper", 100'000, procedural::make_soup},
 };
 
-/// Sine and cosine of an angle in degrees, exact at multiples of 90.
-void sine_cosine(float degrees, double& sine, double& cosine) {
-  const double reduced = std::remainder(static_cast<double>(degrees), 360.0);
-  const double quarter = std::nearbyint(reduced / 90);
-  const double rest = (reduced - 90 * quarter) * (3.14159265358979323846 / 180);
-  const double s = std::sin(rest), c = std::cos(rest);
-  switch (static_cast<int>(quarter) & 3) {
-    case 0:
-      sine = s, cosine = c;
-      break;
-    case 1:
-      sine = c, cosine = -s;
-      break;
-    case 2:
-      sine = -s, cosine = -c;
-      break;
-    default:
-      sine = -c, cosine = s;
-  }
-}
-
-/// Rotation about x, then y, then z, each by degrees.
-class Rotation {
- public:
-  explicit Rotation(Vec3 degrees) {
-    for (int axis = 0; axis < 3; ++axis) sine_cosine(degrees[axis], sine_[axis], cosine_[axis]);
-  }
-  Vec3 turn(Vec3 v, Vec3 center) const {
-    double p[3];
-    for (int axis = 0; axis < 3; ++axis) p[axis] = static_cast<double>(v[axis]) - center[axis];
-    for (int axis = 0; axis < 3; ++axis) {
-      double& a = p[(axis + 1) % 3];
-      double& b = p[(axis + 2) % 3];
-      const double turned = a * cosine_[axis] - b * sine_[axis];
-      b = a * sine_[axis] + b * cosine_[axis];
-      a = turned;
-    }
-    for (int axis = 0; axis < 3; ++axis) v[axis] = static_cast<float>(p[axis] + center[axis]);
-    return v;
-  }
-
- private:
-  double sine_[3], cosine_[3];
-};
-
-/// Nothing need move, and nothing then changes by rounding either.
-bool is_whole_turns(Vec3 degrees) {
-  return std::remainder(degrees.x, 360.0f) == 0 && std::remainder(degrees.y, 360.0f) == 0 &&
-         std::remainder(degrees.z, 360.0f) == 0;
-}
-
 void rotate(Scene& scene, Vec3 degrees) {
   Box box;
   for (const Vec3& v : scene.mesh.vertices) box.grow(v);
-  const Rotation rotation(degrees);
-  const Vec3 center = box.center();
-  for (Vec3& v : scene.mesh.vertices) v = rotation.turn(v, center);
-  scene.view.eye = rotation.turn(scene.view.eye, center);
-  scene.view.look_at = rotation.turn(scene.view.look_at, center);
-  scene.view.up = rotation.turn(scene.view.up, {});
+  mesh::rotate(scene.mesh, degrees, box.center());
+  scene.view = mesh::rotate(scene.view, degrees, box.center());
+}
+
+/// Adds the triangles that SceneOptions::outlier and spike ask for. A real defect of files: one stray vertex stretches
+/// the box of the whole scene, or one triangle across it.
+void add_defects(TriangleMesh& mesh, const SceneOptions& options) {
+  Box box;
+  for (const Vec3& v : mesh.vertices) box.grow(v);
+  const Vec3 center = box.center(), extent = box.extent();
+  const float diagonal = length(extent);
+  const auto add = [&](Vec3 a, Vec3 b, Vec3 c) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), {a, b, c});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  };
+  const Vec3 direction = normalize(Vec3{1, 2, 3});
+  if (options.outlier > 0) {
+    const Vec3 place = center + direction * (options.outlier * diagonal);
+    const float side = maximum(0.001f * diagonal, options.outlier * diagonal * 0x1p-20f);  // of more than rounding
+    add(place, place + Vec3{side, 0, 0}, place + Vec3{0, side, 0});
+  }
+  if (options.spike > 0)
+    add(center, center + Vec3{0.001f * diagonal, 0, 0}, center + direction * (options.spike * diagonal));
+}
+
+Status check_distance(const char* what, std::string_view id, float distance) {
+  if (distance >= 0 && distance <= kFarthest) return {};
+  return {ErrorCode::out_of_range, std::string(what) + " of scene \"" + std::string(id) +
+                                       "\" must be from 0 to 1e9 diagonals, not " + std::to_string(distance)};
 }
 
 }  // namespace
@@ -116,8 +88,11 @@ Result<Scene> make_scene(std::string_view id, const SceneOptions& options) {
               "rotation of scene \"" + std::string(id) + "\" is not finite: " + std::to_string(resolved.rotate.x) +
                   ":" + std::to_string(resolved.rotate.y) + ":" + std::to_string(resolved.rotate.z)};
     }
+    if (const Status status = check_distance("outlier", id, resolved.outlier); !status) return status.error();
+    if (const Status status = check_distance("spike", id, resolved.spike); !status) return status.error();
     Scene scene = info->make(resolved);
-    if (!is_whole_turns(resolved.rotate)) rotate(scene, resolved.rotate);
+    rotate(scene, resolved.rotate);
+    add_defects(scene.mesh, resolved);
     scene.mesh.name = info->id;
     return scene;
   } catch (const std::bad_alloc&) {

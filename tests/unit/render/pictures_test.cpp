@@ -12,7 +12,8 @@
 namespace boxwood::render {
 namespace {
 
-constexpr Shade kAllShades[] = {Shade::normals, Shade::ao, Shade::depth, Shade::nodes, Shade::primitives, Shade::ids};
+constexpr Shade kAllShades[] = {Shade::normals,    Shade::ao,  Shade::depth,     Shade::nodes,
+                                Shade::primitives, Shade::ids, Shade::subdivided};
 
 Rgb pixel(const Image& image, int x, int y) {
   const std::uint8_t* p = &image.rgb[3 * (static_cast<std::size_t>(y) * image.width + x)];
@@ -40,7 +41,7 @@ std::set<Rgb> colors(const Image& image) {
 }
 
 TEST(FindShade, KnowsAllNamesAndListsThemForAnUnknownOne) {
-  const char* names[] = {"normals", "ao", "depth", "nodes", "primitives", "ids"};
+  const char* names[] = {"normals", "ao", "depth", "nodes", "primitives", "ids", "subdivided"};
   for (std::size_t i = 0; i < std::size(kAllShades); ++i) {
     const auto shade = find_shade(names[i]);
     ASSERT_TRUE(shade);
@@ -50,9 +51,31 @@ TEST(FindShade, KnowsAllNamesAndListsThemForAnUnknownOne) {
     const auto shade = find_shade(wrong);
     ASSERT_FALSE(shade);
     EXPECT_EQ(shade.error().code, ErrorCode::unknown_name);
-    EXPECT_NE(shade.error().message.find("normals, ao, depth, nodes, primitives, ids"), std::string::npos);
+    EXPECT_NE(shade.error().message.find("normals, ao, depth, nodes, primitives, ids, subdivided"), std::string::npos);
     EXPECT_NE(shade.error().message.find('"' + std::string(wrong) + '"'), std::string::npos);
   }
+}
+
+TEST(Render, MarkedTrianglesAreRedAndOnlyThose) {
+  const Accel accel = build(square(1));  // two triangles
+  const Image plain = picture(accel, kFromAbove, 40, 40, Shade::normals);
+  const auto unmarked = render(accel, kFromAbove, 40, 40, Shade::subdivided);
+  ASSERT_TRUE(unmarked);
+  EXPECT_EQ(unmarked->rgb, plain.rgb);
+  const std::vector<std::uint8_t> marks = {0, 1};
+  EXPECT_EQ(render(accel, kFromAbove, 40, 40, Shade::normals, marks)->rgb, plain.rgb);
+  const auto image = render(accel, kFromAbove, 40, 40, Shade::subdivided, marks);
+  ASSERT_TRUE(image);
+  const Image ids = picture(accel, kFromAbove, 40, 40, Shade::ids);
+  std::set<Rgb> changed_ids, kept_ids;
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 40; ++x) {
+      const Rgb before = pixel(plain, x, y), after = pixel(*image, x, y);
+      (before == after ? kept_ids : changed_ids).insert(pixel(ids, x, y));
+      if (before != after) EXPECT_GT(after[0], 2 * after[1]) << x << ", " << y;
+    }
+  EXPECT_EQ(changed_ids.size(), 1u);  // all of one triangle
+  EXPECT_FALSE(kept_ids.contains(*changed_ids.begin()));
 }
 
 TEST(Render, RefusesWhatPrimaryRaysRefuses) {
