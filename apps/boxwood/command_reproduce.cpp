@@ -17,6 +17,7 @@ struct Options {
   CommonOptions common;
   std::string table, size = "512x512", markdown, csv, charts, cameras;
   std::vector<std::string> inputs;
+  InputOptions input;
   Effort effort;
   std::uint64_t random_rays = Effort{}.random_rays;
 };
@@ -76,6 +77,7 @@ std::string command_line(const Options& options) {
   for (const std::string& input : options.inputs) line += " " + input.substr(input.rfind('/') + 1);
   line += fmt::format(" --size {} --random-rays {} --repeat {} --seed {}", options.size, options.random_rays,
                       options.effort.repeat, options.effort.seed);
+  if (!options.input.rotate.empty()) line += " --rotate " + options.input.rotate;
   if (!options.cameras.empty()) line += " --cameras " + options.cameras.substr(options.cameras.rfind('/') + 1);
   return line + (options.effort.slow ? " --slow" : "");
 }
@@ -114,7 +116,7 @@ Status run_reproduce(Options& options) {
 
   std::vector<std::shared_ptr<const Input>> inputs;
   for (const std::string& text : options.inputs) {
-    auto input = load_usable_input(text, session);
+    auto input = load_usable_input(text, options.input, session);
     if (!input) return input.error();
     inputs.push_back(std::make_shared<Input>(std::move(*input)));
   }
@@ -184,6 +186,7 @@ void add_reproduce_command(CLI::App& program, Run& run) {
       ->type_name("FILE");
   command.add_option("--csv", options->csv, "Write the cells as CSV to FILE, or '-'")->type_name("FILE");
   command.add_option("--charts", options->charts, "Folder that exists, for the figures as SVG")->type_name("FOLDER");
+  options->input.add_to(command);
   options->common.add_to(command);
   std::string list = "\nTables:\n";
   for (const TableInfo& table : tables()) list += fmt::format("  {:<9} {}\n", table.id, table.summary);

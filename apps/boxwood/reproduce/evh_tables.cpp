@@ -144,7 +144,7 @@ Result<TableResult> evh_rotation(Laboratory& laboratory, const std::vector<Subje
   // Frame 0 stands upright: the stand-in is kept as frame 16.
   Subject upright = *sponza;
   if (upright.input->is_scene) {
-    auto input = load_usable_input("scene:atrium,triangles=66454", laboratory.session());
+    auto input = load_usable_input("scene:atrium,triangles=66454", {}, laboratory.session());
     if (!input) return input.error();
     upright.input = std::make_shared<Input>(std::move(*input));
     upright.label = upright.input->text;
@@ -170,16 +170,15 @@ Result<TableResult> evh_rotation(Laboratory& laboratory, const std::vector<Subje
   const double rays = static_cast<double>(laboratory.effort().width) * laboratory.effort().height;
   for (int frame = 0; frame < kFrames; ++frame) {
     const Vec3 angles = frame_angles(frame);
-    const auto subject = rotated(upright, angles, laboratory.session());
-    if (!subject) return subject.error();
-    const auto base = laboratory.trace(*subject, split_method("none"), Rays::primary);
+    const Subject subject = rotated(upright, angles, *laboratory.session().executor());
+    const auto base = laboratory.trace(subject, split_method("none"), Rays::primary);
     if (!base) return base.error();
     Row row{{fmt::format("{}", frame), fmt::format("{:.1f} {:.1f} {:.1f}", angles.x, angles.y, angles.z)},
             std::vector<Cell>(table.columns.size())};
     row.cells[0].ours = 1e-3 * rays / base->mrays;
     time.series[0].points.emplace_back(frame, *row.cells[0].ours);
     for (std::size_t i = 0; i < std::size(kThresholds); ++i) {
-      const auto compared = compare(laboratory, *subject, threshold(kThresholds[i]));
+      const auto compared = compare(laboratory, subject, threshold(kThresholds[i]));
       if (!compared) return compared.error();
       row.cells[1 + i].ours = *row.cells[0].ours * compared->time;
       row.cells[4 + i].ours = compared->references;

@@ -59,10 +59,14 @@ std::string Method::key() const {
   return key;
 }
 
-Result<Subject> rotated(const Subject& subject, Vec3 degrees, const Session&) {
+Subject rotated(const Subject& subject, Vec3 degrees, Executor& executor) {
   auto input = std::make_shared<Input>(*subject.input);
-  rotate_input(*input, degrees);
-  return Subject{input, subject.label + " turned by " + vector_text(degrees), subject.paper_scene};
+  const Vec3 center = input->bounds.center();
+  mesh::rotate(input->mesh, degrees, center);
+  input->view = mesh::rotate(input->view, degrees, center);
+  input->bounds = mesh::bounds(input->mesh, executor);
+  input->hash = mesh::hash(input->mesh, executor);
+  return {input, subject.label, subject.paper_scene};
 }
 
 std::string Laboratory::left_out(const Subject& subject, const Method& method) const {
@@ -92,7 +96,7 @@ Result<const Laboratory::Tree*> Laboratory::tree(const Subject& subject, const M
     const double start = now();
     auto references = refs::make_references(mesh, *session_.executor());
     if (!references) return references.error();
-    auto split = refs::apply_presplit(std::move(*references), *presplit, *session_.executor());
+    auto split = refs::apply_presplit(std::move(*references), mesh, *presplit, *session_.executor());
     if (!split) return split.error();
     auto tree = builders::build(std::move(*split), {method.builder, method.settings}, {*session_.executor()});
     if (!tree) return tree.error();

@@ -63,7 +63,7 @@ struct Effort {
 inline constexpr double kSlowSeconds = 300;
 
 /// A subject turned about its centre by degrees around x, y, z, with the view.
-Result<Subject> rotated(const Subject& subject, Vec3 degrees, const Session& session);
+Subject rotated(const Subject& subject, Vec3 degrees, Executor& executor);
 
 class Laboratory {
  public:

@@ -61,7 +61,7 @@ Result<std::vector<Subject>> subjects(const std::string& paper, const std::vecto
   if (!inputs.empty()) return list;
   for (const PaperScene& scene : kScenes) {
     if (paper != scene.paper) continue;
-    auto input = load_usable_input(scene.stand_in, session);
+    auto input = load_usable_input(scene.stand_in, {}, session);
     if (!input) return input.error();
     list.push_back(
         {std::make_shared<Input>(std::move(*input)), fmt::format("{} for {}", scene.stand_in, scene.name), scene.name});

@@ -183,8 +183,8 @@ Result<TableResult> popov_presplit(Laboratory& laboratory, const std::vector<Sub
   table.columns = {{"MiB", 1}, {"references", 0}, {"Exp", 1}, {"Cost", 1}, {"primary", 2, true}};
   for (const Subject& upright : subjects)
     for (const bool turned : {false, true}) {
-      auto subject = turned ? rotated(upright, {30, 40, 20}, laboratory.session()) : Result<Subject>(upright);
-      if (!subject) return subject.error();
+      const Subject subject =
+          turned ? rotated(upright, {30, 40, 20}, *laboratory.session().executor()) : upright;
       for (const NamedMethod& method : methods) {
         const PopovPresplitRow* const paper =
             upright.paper_scene == "SPONZA" ? popov_presplit_row(turned, method.name) : nullptr;
@@ -194,13 +194,13 @@ Result<TableResult> popov_presplit(Laboratory& laboratory, const std::vector<Sub
         Row row{{scene_label(upright), turned ? "yes" : "no", method.name},
                 {value(&PopovPresplitRow::size), paper_cell({}), value(&PopovPresplitRow::exp),
                  value(&PopovPresplitRow::cost), value(&PopovPresplitRow::speed)}};
-        const std::string reason = laboratory.left_out(*subject, method.method);
+        const std::string reason = laboratory.left_out(subject, method.method);
         if (!reason.empty()) {
           for (Cell& cell : row.cells) cell.note = reason;
         } else {
-          const auto built = laboratory.build(*subject, method.method);
+          const auto built = laboratory.build(subject, method.method);
           if (!built) return built.error();
-          const auto traced = laboratory.trace(*subject, method.method, Rays::primary);
+          const auto traced = laboratory.trace(subject, method.method, Rays::primary);
           if (!traced) return traced.error();
           row.cells[0].ours = 0x1p-20 * static_cast<double>(built->bytes);
           row.cells[1].ours = static_cast<double>(built->references);
