@@ -159,7 +159,7 @@ Result<std::vector<Ray>> Laboratory::make_rays(const Subject& subject, Rays rays
     case Rays::lines:
       break;
   }
-  return render::random_lines(subject.input->bounds, effort_.random_rays, effort_.seed);
+  return render::line_rays(subject.input->bounds, effort_.random_rays, effort_.seed);
 }
 
 Result<TraceResult> Laboratory::trace(const Subject& subject, const Method& method, Rays rays,

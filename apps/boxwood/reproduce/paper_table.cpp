@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "table.h"
+#include "text.h"
 
 namespace boxwood::program::reproduce {
 namespace {
@@ -30,13 +31,6 @@ std::string cell_text(const Cell& cell, const Column& column) {
 std::optional<double> ratio(const std::optional<double>& value, const std::optional<double>& baseline) {
   if (!value || !baseline || !(*baseline > 0)) return {};
   return *value / *baseline;
-}
-
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
 }
 
 std::string csv_number(const std::optional<double>& value) {
@@ -118,9 +112,9 @@ std::string csv(const PaperTable& table, bool head) {
     for (const std::string& label : row.labels) name += (name.empty() ? "" : "; ") + label;
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
       const Cell& cell = row.cells[c];
-      text += fmt::format("{},{},{},{},{},{},{},{}\n", table.id, quoted(name), quoted(table.columns[c].name),
+      text += fmt::format("{},{},{},{},{},{},{},{}\n", table.id, csv_field(name), csv_field(table.columns[c].name),
                           csv_number(cell.ours), csv_number(cell.paper), csv_number(cell.our_ratio),
-                          csv_number(cell.paper_ratio), quoted(cell.note));
+                          csv_number(cell.paper_ratio), csv_field(cell.note));
     }
   }
   return text;

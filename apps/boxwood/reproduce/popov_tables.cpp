@@ -183,8 +183,7 @@ Result<TableResult> popov_presplit(Laboratory& laboratory, const std::vector<Sub
   table.columns = {{"MiB", 1}, {"references", 0}, {"Exp", 1}, {"Cost", 1}, {"primary", 2, true}};
   for (const Subject& upright : subjects)
     for (const bool turned : {false, true}) {
-      const Subject subject =
-          turned ? rotated(upright, {30, 40, 20}, *laboratory.session().executor()) : upright;
+      const Subject subject = turned ? rotated(upright, {30, 40, 20}, *laboratory.session().executor()) : upright;
       for (const NamedMethod& method : methods) {
         const PopovPresplitRow* const paper =
             upright.paper_scene == "SPONZA" ? popov_presplit_row(turned, method.name) : nullptr;
