@@ -20,5 +20,6 @@ void add_trace_command(CLI::App& program, Run& run);
 void add_bench_command(CLI::App& program, Run& run);
 void add_correlate_command(CLI::App& program, Run& run);
 void add_render_command(CLI::App& program, Run& run);
+void add_reproduce_command(CLI::App& program, Run& run);
 
 }  // namespace boxwood::program

@@ -66,6 +66,7 @@ int run_program(int argc, char** argv) {
   program::add_bench_command(app, run);
   program::add_correlate_command(app, run);
   program::add_render_command(app, run);
+  program::add_reproduce_command(app, run);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {  // help or version

@@ -97,6 +97,13 @@ std::string vector_text(Vec3 v) {
   return fmt::format("{}:{}:{}", v.x, v.y, v.z);
 }
 
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string field = "\"";
+  for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return field + "\"";
+}
+
 std::string one_line(std::string_view text) {
   std::string line;
   for (const char c : text) {

@@ -35,6 +35,8 @@ std::string with_thousands(std::uint64_t value);
 std::string hash_text(std::uint64_t hash);
 /// "x:y:z" with as many digits as reading it back to the same bits needs.
 std::string vector_text(Vec3 v);
+/// A field of a CSV line: in quotes when it needs them.
+std::string csv_field(const std::string& text);
 /// Everything on one line: line breaks and what surrounds them become single spaces.
 std::string one_line(std::string_view text);
 

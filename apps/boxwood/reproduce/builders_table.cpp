@@ -1,0 +1,99 @@
+// All builders on all meshes: what each costs to build and what rays cost then. Not a paper's table, but its question.
+#include <cmath>
+
+#include "reproduce/cells.h"
+#include "reproduce/tables.h"
+
+namespace boxwood::program::reproduce {
+namespace {
+
+/// Layout and ray counts of everyday use.
+constexpr const char* kLayout = "wide8";
+
+/// Geometric means over the meshes, over one builder.
+struct Means {
+  double log_build = 0, log_speed = 0;
+  int count = 0;
+};
+
+}  // namespace
+
+Result<TableResult> compare_builders(Laboratory& laboratory, const std::vector<Subject>& subjects) {
+  PaperTable table;
+  table.id = "builders";
+  table.title = "build time against ray speed of all builders";
+  table.notes = {
+      fmt::format("Layout {}, robust mode. Build: references and tree on {} threads. Rays: {}x{} primary and {} "
+                  "random rays on one thread, median of {}; nodes and triangles per random ray.",
+                  kLayout, laboratory.session().threads(), laboratory.effort().width, laboratory.effort().height,
+                  laboratory.effort().random_rays, laboratory.effort().repeat),
+      "C_T = 2, C_I = 3. EPO: end-point overlap (Aila, Karras and Laine 2013)."};
+  table.labels = {"mesh", "builder"};
+  table.baseline = "sweep-sah";
+  table.columns = {{"build ms", 0, true}, {"Exp", 1},       {"EPO", 2},           {"references", 0},
+                   {"nodes", 2},          {"triangles", 2}, {"primary", 2, true}, {"random", 2, true}};
+  Chart chart{.name = "builders",
+              .title = "Builders: speed of random rays against build time",
+              .x = "build time, x of sweep-sah's (geometric mean of the meshes)",
+              .y = "random rays, x of sweep-sah's",
+              .series = {},
+              .lines = false,
+              .log_x = true};
+  std::map<std::string, Means> means;
+  for (const Subject& subject : subjects) {
+    std::optional<double> base_build, base_speed;
+    std::vector<std::pair<std::string, std::pair<double, double>>> points;
+    for (const auto& builder : builders::registry()) {
+      const Method method{builder.id, popov_cost(), "none", kLayout};
+      Row row{{subject.label, builder.id}, std::vector<Cell>(table.columns.size())};
+      const std::string reason = laboratory.left_out(subject, method);
+      if (!reason.empty()) {
+        for (Cell& cell : row.cells) cell.note = reason;
+        table.rows.push_back(std::move(row));
+        continue;
+      }
+      const auto built = laboratory.build(subject, method);
+      if (!built) return built.error();
+      const auto overlap = laboratory.end_point_overlap(subject, method);
+      if (!overlap) return overlap.error();
+      const auto primary = laboratory.trace(subject, method, Rays::primary);
+      if (!primary) return primary.error();
+      const auto random = laboratory.trace(subject, method, Rays::random);
+      if (!random) return random.error();
+      const double values[] = {
+          built->milliseconds, built->surface_area_cost, *overlap,       static_cast<double>(built->references),
+          random->nodes,       random->primitives,       primary->mrays, random->mrays};
+      for (std::size_t c = 0; c < row.cells.size(); ++c) row.cells[c].ours = values[c];
+      if (builder.id == table.baseline) base_build = built->milliseconds, base_speed = random->mrays;
+      points.push_back({builder.id, {built->milliseconds, random->mrays}});
+      table.rows.push_back(std::move(row));
+    }
+    if (!base_build || !base_speed) continue;
+    for (const auto& [id, point] : points) {
+      Means& mean = means[id];
+      mean.log_build += std::log(point.first / *base_build);
+      mean.log_speed += std::log(point.second / *base_speed);
+      ++mean.count;
+    }
+  }
+  for (const auto& builder : builders::registry()) {
+    const auto mean = means.find(builder.id);
+    if (mean == means.end()) continue;
+    const double count = mean->second.count;
+    chart.series.push_back({builder.id,
+                            {{std::exp(mean->second.log_build / count), std::exp(mean->second.log_speed / count)}},
+                            {builder.id}});
+  }
+  // The baseline is not the first row of a mesh, so its ratios are found per mesh.
+  std::map<std::string, std::vector<Cell>> base;
+  for (const Row& row : table.rows)
+    if (row.labels.back() == table.baseline) base[row.labels.front()] = row.cells;
+  for (Row& row : table.rows)
+    for (std::size_t c = 0; c < table.columns.size(); ++c)
+      if (const auto found = base.find(row.labels.front());
+          table.columns[c].of_machine && found != base.end() && row.cells[c].ours && found->second[c].ours)
+        row.cells[c].our_ratio = *row.cells[c].ours / *found->second[c].ours;
+  return TableResult{std::move(table), {std::move(chart)}};
+}
+
+}  // namespace boxwood::program::reproduce
