@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "boxwood/io.h"
+#include "camera.h"
 #include "commands.h"
 #include "reproduce/paper_scenes.h"
 #include "reproduce/tables.h"

@@ -1,7 +1,8 @@
 // Links between triangles over their edges, in the order in which EBBVH (Houghton and Spoerer, bib key ebbvh) pairs
-// them. The edge table has the uses of each edge side by side and the edges ascending by vertex ids; a stable radix
-// sort by the area of the edge's box does the rest. The key is the top of the area as a double: monotone, of any scale,
-// and three digits long. O(n) but for the table's small sorts; the same links for every thread count.
+// them. A radix sort brings the sides of each edge together, ascending by vertex ids; a second, stable one orders the
+// links between them by the area of the edge's box. Its key is the top of the area as a double: monotone, of any scale,
+// and three digits long. The edge table is not used here: it would take two atomic additions for each side of a
+// triangle, and the sort none. O(n), the same links for every thread count.
 #include <algorithm>
 #include <bit>
 

@@ -270,7 +270,7 @@ Result<tree::BinaryTree> build_aac(refs::ReferenceSet&& set, const OptionValues&
 constinit const BuilderInfo aac_builder = {
     .id = "aac",
     .name = "AAC",
-    .summary = "merges the closest of few clusters, up a Morton tree; best for good trees made bottom-up",
+    .summary = "merges the closest clusters, up a Morton tree; best for architecture, when building may take long",
     .paper = "aac",
     .cost_class = "O(n log n)",
     .splits_references = false,

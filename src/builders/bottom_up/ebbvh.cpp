@@ -198,7 +198,7 @@ class TopMerger {
 };
 
 /// The build's prices and one root to a leaf: the forest decides on leaves. (Letting the top stop at leaves of several
-/// roots, with prices in roots, gave the same trees in the same time below surface area heuristics.)
+/// roots, with prices in roots, changed neither the cost nor the time below a surface area heuristic.)
 BuildOptions top_options(const OptionValues& options, const char* top) {
   BuildOptions result{.builder = top};
   for (const auto& [key, value] : options.echo())

@@ -162,7 +162,7 @@ Result<tree::BinaryTree> build_ploc(refs::ReferenceSet&& set, const OptionValues
 constinit const BuilderInfo ploc_builder = {
     .id = "ploc",
     .name = "PLOC",
-    .summary = "merges near clusters along the Morton curve, bottom-up; best for good trees at the speed of a sort",
+    .summary = "merges near clusters along the Morton curve, bottom-up; best for architecture on many threads",
     .paper = "ploc",
     .cost_class = "O(n log n)",
     .splits_references = false,
