@@ -1,9 +1,9 @@
-// Packets that keep a range of rays (Wald, Boulos and Shirley 2007, bib key waldboulos2007; the cull by interval arithmetic
-// from Boulos et al. 2006, boulos2006). At each node the packet as a whole is tested first, by bounds of all its rays;
-// then the first ray that meets the box is looked for from the front. Rays before it are out below this node, those
-// behind it are taken to be in without a test until a leaf, where each is asked. Ours differs: four rays are tested at
-// a time and counted so, the end of the range is not searched for, and directions may differ in sign, which only makes
-// the cull weaker. O(depth) stack, nothing random.
+// Packets that keep a range of rays (Wald, Boulos and Shirley 2007, bib key waldboulos2007; the cull by interval
+// arithmetic from Boulos, Wald and Shirley 2006, boulos2006). At each node the packet as a whole is tested first, by
+// bounds of all its rays; then the first ray that meets the box is looked for from the front. Rays before it are out
+// below this node, those behind it are taken to be in without a test until a leaf, where each is asked. Ours differs:
+// four rays are tested at a time and counted so, the end of the range is not searched for, and directions may differ in
+// sign, which only makes the cull weaker. O(depth) stack, nothing random.
 #include <bit>
 
 #include "queries/kernels/packet.h"

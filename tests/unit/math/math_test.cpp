@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "math/clip.h"
+
 namespace boxwood {
 namespace {
 
@@ -41,6 +43,21 @@ TEST(Triangle, BoundsAndNormal) {
   const Triangle t{{0, 0, 0}, {2, 0, 0}, {0, 3, 1}};
   EXPECT_EQ(t.bounds(), (Box{{0, 0, 0}, {2, 3, 1}}));
   EXPECT_EQ(t.normal(), (Vec3{0, -2, 6}));
+}
+
+TEST(ConvexPolygon, AreaOfWhatIsLeft) {
+  ConvexPolygon polygon({{0, 0, 5}, {4, 0, 5}, {0, 4, 5}});
+  EXPECT_DOUBLE_EQ(polygon.area(), 8);
+  polygon.clip(0, 1, false);  // a right triangle of legs 3
+  EXPECT_DOUBLE_EQ(polygon.area(), 4.5);
+  polygon.clip(1, 1, true);  // less its upper part, of legs 2
+  EXPECT_DOUBLE_EQ(polygon.area(), 2.5);
+  ConvexPolygon touching = polygon;
+  touching.clip({{0, 0, 5}, {1, 1, 5}});
+  EXPECT_EQ(touching.area(), 0) << "a line is left";
+  polygon.clip(2, 6, false);
+  EXPECT_TRUE(polygon.is_empty());
+  EXPECT_EQ(polygon.area(), 0);
 }
 
 }  // namespace
