@@ -73,7 +73,9 @@ TEST(Render, MarkedTrianglesAreRedAndOnlyThose) {
     for (int x = 0; x < 40; ++x) {
       const Rgb before = pixel(plain, x, y), after = pixel(*image, x, y);
       (before == after ? kept_ids : changed_ids).insert(pixel(ids, x, y));
-      if (before != after) EXPECT_GT(after[0], 2 * after[1]) << x << ", " << y;
+      if (before != after) {
+        EXPECT_GT(after[0], 2 * after[1]) << x << ", " << y;
+      }
     }
   EXPECT_EQ(changed_ids.size(), 1u);  // all of one triangle
   EXPECT_FALSE(kept_ids.contains(*changed_ids.begin()));
