@@ -300,7 +300,7 @@ void add_bench_command(CLI::App& program, Run& run) {
   command.add_option("INPUT", options->inputs, kInputHelp)->required()->type_name("");
   add_list(command, "-b,--builders", options->builders, "Builder ids, or all (the default)");
   add_settings_option(command, options->settings);
-  add_list(command, "-l,--layouts", options->layouts, "linear, wide4, wide8 (the default), or all");
+  add_list(command, "-l,--layouts", options->layouts, "linear, wide4, wide8 (the default), wide8-quads, or all");
   add_list(command, "--modes", options->modes, "robust (the default), fast");
   add_list(command, "--rays", options->kinds, "primary, random, diffuse, occlusion (all by default)");
   add_list(command, "--rivals", options->rivals, "embree, or embree:low, embree:medium, embree:high");

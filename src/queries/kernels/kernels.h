@@ -10,6 +10,7 @@ namespace boxwood::queries {
 Kernels linear_kernels(Mode mode);
 Kernels wide4_kernels(Mode mode, std::int64_t target);
 Kernels wide8_kernels(Mode mode, std::int64_t target);
+Kernels wide8_quads_kernels(Mode mode, std::int64_t target);
 
 /// Place of a target in the tables HWY_EXPORT makes. A dispatcher of our own, so that forcing an instruction set
 /// changes nothing for other users of Highway in the process.
