@@ -14,7 +14,7 @@
 
 namespace boxwood::layouts {
 
-enum class LayoutId { linear, wide4, wide8 };
+enum class LayoutId { linear, wide4, wide8, wide8_quads };
 
 /// One row of the registry of layouts.
 struct LayoutInfo {
@@ -74,11 +74,31 @@ struct alignas(32) TriangleBlock {
 };
 static_assert(sizeof(TriangleBlock) == 160);
 
+/// Four quads, planes apart: two triangles each that share the edge from edge[0] to edge[1] and have one corner more,
+/// apex[axis][quad] and apex[axis][4 + quad]. A triangle without a partner is a quad whose second apex is NaN and
+/// second primitive kInvalidPrimitive. Unused quads are NaN, both primitives kInvalidPrimitive, and stand behind the
+/// used ones. `primitive` is the triangle's id in bits 0 to 28, in bits 29 and 30 by how many places the mesh's corners
+/// are turned against (apex, edge[0], edge[1]), and bit 31 if the edge is run through from edge[1] to edge[0] instead.
+struct alignas(32) QuadBlock {
+  float apex[3][8];
+  float edge[2][3][4];
+  std::uint32_t primitive[8];
+};
+static_assert(sizeof(QuadBlock) == 224);
+inline constexpr std::uint32_t kQuadIdMask = 0x1fffffffu, kQuadTurnBit = 1u << 29, kQuadFlipBit = 1u << 31;
+
+inline constexpr std::uint8_t kQuadCornerPlaces[8][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {},
+                                                         {0, 2, 1}, {2, 1, 0}, {1, 0, 2}, {}};
+/// Where corner `corner` of the mesh's triangle stands: 0 apex, 1 edge[0], 2 edge[1].
+constexpr int quad_corner_place(std::uint32_t primitive, int corner) {
+  return kQuadCornerPlaces[primitive >> 29][corner];
+}
+
 /// An encoded tree with its triangles. Immutable once made; read from any number of threads.
 struct Layout {
   LayoutId id = LayoutId::wide8;
   AlignedBuffer<std::byte> nodes;      ///< LinearNode or WideNode<W>
-  AlignedBuffer<std::byte> triangles;  ///< LinearTriangle or TriangleBlock
+  AlignedBuffer<std::byte> triangles;  ///< LinearTriangle, TriangleBlock or QuadBlock
   std::uint32_t root = kNoRoot;        ///< wide: child word of the root; linear: 0; kNoRoot when empty
   Box bounds;
   std::size_t max_stack = 0;  ///< most entries a traversal can have waiting
@@ -93,6 +113,13 @@ Result<Layout> encode_linear(const tree::BinaryTree& tree, const MeshView& mesh,
 
 /// Encodes a tree of width 4 or 8 as `wide4` or `wide8`. Leaves must hold 1 to 32 references. Errors as above.
 Result<Layout> encode_wide(const tree::WideTree& tree, const MeshView& mesh, Executor& executor);
+
+/// Encodes a tree of width 8 as `wide8-quads`, pairing triangles of one leaf that have an edge in common. Errors as
+/// above, and a mesh of more than 2^29 triangles.
+Result<Layout> encode_wide_quads(const tree::WideTree& tree, const MeshView& mesh, Executor& executor);
+
+/// Blocks that a leaf over these references takes in `wide8-quads`; above 32 references, leaves of 32 each.
+std::uint32_t quad_blocks(std::span<const std::uint32_t> references, const MeshView& mesh);
 
 /// Walks the encoded tree and gives the first contradiction as an error: every child box holds all triangles below it
 /// (meets them, when references are split), every word points inside the arrays, every reference is found exactly as

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <span>
 
 #include "boxwood/base.h"
 #include "boxwood/parallel.h"
@@ -15,6 +17,9 @@ struct CollapseOptions {
   int block = 4;            ///< primitives tested at once, 1 to 16
   int max_leaf_blocks = 2;  ///< leaves hold at most block * this references, 1 to 8
   float node_cost = 1.0f;   ///< relative to one block test, > 0
+  /// Blocks that a leaf over these references takes, where their number alone does not say it; empty: their number over
+  /// `block`, rounded up, which is also the least it may say. Called from several threads at once.
+  std::function<std::uint32_t(std::span<const std::uint32_t> references)> leaf_blocks = {};
 };
 
 /// The cheapest tree of the given width that can be made by merging nodes of a binary tree and turning subtrees into

@@ -52,8 +52,8 @@ std::uint64_t hash(std::span<const Ray> rays);
 enum class Shade { normals, ao, depth, nodes, primitives, ids, subdivided, clusters, children };
 Result<Shade> find_shade(std::string_view name);
 
-/// Traces one primary ray a pixel on the accel's executor. `numbers` are those of the triangles, by primitive id, for the
-/// shades that show them; ids past their end have 0. Errors: those of primary_rays.
+/// Traces one primary ray a pixel on the accel's executor. `numbers` are those of the triangles, by primitive id, for
+/// the shades that show them; ids past their end have 0. Errors: those of primary_rays.
 Result<Image> render(const Accel& accel, const View& view, int width, int height, Shade shade,
                      std::span<const std::uint32_t> numbers = {});
 

@@ -6,6 +6,7 @@
 
 #include "boxwood/metrics.h"
 #include "boxwood/optimizers.h"
+#include "layouts/encode.h"
 
 namespace boxwood {
 namespace {
@@ -21,9 +22,19 @@ Result<layouts::Layout> encode(layouts::LayoutId id, const tree::BinaryTree& tre
   // A node visit costs about one and a half block tests in the kernels; the surface area cost decides on leaf sizes.
   options.node_cost = 1.5f;
   options.max_leaf_blocks = 4;
+  const bool quads = id == layouts::LayoutId::wide8_quads;
+  if (quads) {
+    // Pricing looks at the triangles, before the encoder could find one that is not there.
+    if (auto status = layouts::check_references(tree.references.span(), mesh); !status) return status.error();
+    // Both triangles of a block's four quads are tested in one go, or nearly.
+    options.block = 8;
+    options.leaf_blocks = [&](std::span<const std::uint32_t> references) {
+      return layouts::quad_blocks(references, mesh);
+    };
+  }
   auto wide = optimizers::collapse_to_wide(tree, options, executor);
   if (!wide) return wide.error();
-  return layouts::encode_wide(*wide, mesh, executor);
+  return quads ? layouts::encode_wide_quads(*wide, mesh, executor) : layouts::encode_wide(*wide, mesh, executor);
 }
 
 Status same_length(std::size_t rays, std::size_t results, const char* what) {

@@ -9,6 +9,9 @@ constexpr LayoutInfo kLayouts[] = {
     {LayoutId::wide4, "wide4", "128-byte nodes of 4 children, tested at once; best for 128-bit SIMD and small memory"},
     {LayoutId::wide8, "wide8",
      "256-byte nodes of 8 children, tested at once; best for speed with AVX2 and up (default)"},
+    {LayoutId::wide8_quads, "wide8-quads",
+     "wide8 with pairs of triangles that share an edge in its leaves; best for large connected meshes and small "
+     "memory"},
 };
 
 }  // namespace

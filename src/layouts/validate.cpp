@@ -116,9 +116,41 @@ class Checker {
     return {};
   }
 
+  Status quad_leaf(const Item& item) {
+    const std::size_t first = leaf_first(item.word), count = leaf_blocks(item.word);
+    if (first + count > layout_.triangles.size() / sizeof(QuadBlock)) return bad("a leaf reaches past the blocks");
+    const auto* blocks = reinterpret_cast<const QuadBlock*>(layout_.triangles.data()) + first;
+    for (std::size_t b = 0; b < count; ++b)
+      for (int lane = 0; lane < 8; ++lane) {
+        const QuadBlock& block = blocks[b];
+        const std::uint32_t word = block.primitive[lane];
+        if (word == kInvalidPrimitive) {
+          const bool lone = lane >= 4 && block.primitive[lane - 4] != kInvalidPrimitive;
+          if (!std::isnan(block.apex[0][lane]) || (!lone && (lane == 0 || b + 1 != count)))
+            return bad("an unused lane is not at a leaf's end");
+          continue;
+        }
+        if (block.primitive[lane & 3] == kInvalidPrimitive ||
+            (lane % 4 && block.primitive[lane % 4 - 1] == kInvalidPrimitive))
+          return bad("a quad stands behind an unused lane");
+        if ((word >> 29 & 3) == 3) return bad("a quad's corners are turned by three places");
+        float corner[3][3];
+        for (int k = 0; k < 3; ++k)
+          for (int axis = 0; axis < 3; ++axis) {
+            const int place = quad_corner_place(word, k);
+            corner[k][axis] = place == 0 ? block.apex[axis][lane] : block.edge[place - 1][axis][lane & 3];
+          }
+        Triangle t;
+        static_assert(sizeof t == sizeof corner);
+        std::memcpy(&t, corner, sizeof t);
+        if (Status s = triangle(t, word & kQuadIdMask, item.box); !s) return s;
+      }
+    return {};
+  }
+
   template <int W>
   Status wide(const Item& item) {
-    if (item.word & kLeafBit) return leaf(item);
+    if (item.word & kLeafBit) return layout_.id == LayoutId::wide8_quads ? quad_leaf(item) : leaf(item);
     if (item.word >= layout_.nodes.size() / sizeof(WideNode<W>))
       return bad("node " + std::to_string(item.word) + " is past the array");
     const auto& node = reinterpret_cast<const WideNode<W>*>(layout_.nodes.data())[item.word];

@@ -1,11 +1,13 @@
 // Layouts `wide4` and `wide8`: nodes that hold the boxes of all their children plane by plane, so that one SIMD
 // operation tests them together (Dammertz, Hanika and Keller 2008, bib key qbvh; Ernst and Greiner 2008; Wald, Benthin
-// and Boulos 2008), over blocks of four triangles stored the same way. O(nodes + triangles), deterministic, parallel.
+// and Boulos 2008), over blocks of four triangles stored the same way; `wide8-quads`, the same nodes over blocks of
+// four quads (quads.cpp). O(nodes + triangles), deterministic, parallel.
 #include <limits>
 #include <vector>
 
 #include "boxwood/layouts.h"
 #include "layouts/encode.h"
+#include "layouts/quads.h"
 
 namespace boxwood::layouts {
 namespace {
@@ -24,6 +26,27 @@ void fill_block(TriangleBlock& block, std::span<const std::uint32_t> references,
     block.primitive[lane] = used ? references[lane] : kInvalidPrimitive;
   }
 }
+
+/// How leaves become blocks: of triangles, or of quads.
+struct TriangleBlocks {
+  using Block = TriangleBlock;
+  static std::uint32_t count(std::span<const std::uint32_t> references, const MeshView&) {
+    return static_cast<std::uint32_t>((references.size() + 3) / 4);
+  }
+  static void fill(Block* blocks, std::span<const std::uint32_t> references, const MeshView& mesh) {
+    for (std::size_t done = 0; done < references.size(); done += 4)
+      fill_block(blocks[done / 4], references.subspan(done, std::min<std::size_t>(4, references.size() - done)), mesh);
+  }
+};
+struct QuadBlocks {
+  using Block = QuadBlock;
+  static std::uint32_t count(std::span<const std::uint32_t> references, const MeshView& mesh) {
+    return quad_blocks(references, mesh);
+  }
+  static void fill(Block* blocks, std::span<const std::uint32_t> references, const MeshView& mesh) {
+    fill_quads(blocks, references, mesh);
+  }
+};
 
 template <int W>
 void fill_node(WideNode<W>& node, std::span<const tree::WideTree::Child> children,
@@ -69,36 +92,53 @@ std::vector<tree::WideTree::Child> order_children(const tree::WideTree& tree) {
   return children;
 }
 
-template <int W>
+using Children = std::vector<tree::WideTree::Child>;
+
+template <int W, class Blocks>
 void fill(Layout& layout, const tree::WideTree& tree, std::span<const tree::WideTree::Child> children,
           std::span<const std::uint32_t> words, const MeshView& mesh, Executor& executor) {
   const std::span<const std::uint32_t> references = tree.references;
   const std::size_t nodes = tree.first_child.size() - 1;
   layout.nodes = AlignedBuffer<std::byte>(nodes * sizeof(WideNode<W>));
   auto* out = reinterpret_cast<WideNode<W>*>(layout.nodes.data());
-  auto* blocks = reinterpret_cast<TriangleBlock*>(layout.triangles.data());
+  auto* blocks = reinterpret_cast<typename Blocks::Block*>(layout.triangles.data());
   executor.for_chunks(nodes, 1024, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const std::size_t first = tree.first_child[n], last = tree.first_child[n + 1];
       fill_node<W>(out[n], children.subspan(first, last - first), words.subspan(first, last - first));
-      for (std::size_t c = first; c < last; ++c) {
-        const auto& child = children[c];
-        for (std::uint32_t done = 0; done < child.count; done += 4)
-          fill_block(blocks[leaf_first(words[c]) + done / 4],
-                     references.subspan(child.first + done, std::min(4u, child.count - done)), mesh);
-      }
+      for (std::size_t c = first; c < last; ++c)
+        if (const auto& child = children[c]; child.count != 0)
+          Blocks::fill(blocks + leaf_first(words[c]), references.subspan(child.first, child.count), mesh);
     }
   });
 }
 
-}  // namespace
+/// The child words, with leaves one behind the other, and the number of blocks.
+template <class Blocks>
+std::pair<std::vector<std::uint32_t>, std::size_t> place_leaves(const tree::WideTree& tree, const Children& children,
+                                                                const MeshView& mesh, Executor& executor) {
+  std::vector<std::uint32_t> words(children.size());
+  executor.for_chunks(words.size(), 4096, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c)
+      words[c] = children[c].count == 0
+                     ? children[c].first
+                     : Blocks::count(std::span(tree.references).subspan(children[c].first, children[c].count), mesh);
+  });
+  std::size_t blocks = 0;
+  for (std::size_t c = 0; c < words.size(); ++c) {
+    if (children[c].count == 0) continue;
+    const std::uint32_t count = words[c];
+    words[c] = leaf_word(static_cast<std::uint32_t>(blocks), count);
+    blocks += count;
+  }
+  return {std::move(words), blocks};
+}
 
-Result<Layout> encode_wide(const tree::WideTree& tree, const MeshView& mesh, Executor& executor) {
-  if (tree.width != 4 && tree.width != 8)
-    return {ErrorCode::invalid_argument, "wide layouts have 4 or 8 children a node, not " + std::to_string(tree.width)};
+template <int W, class Blocks>
+Result<Layout> encode(LayoutId id, const tree::WideTree& tree, const MeshView& mesh, Executor& executor) {
   return guard_memory([&]() -> Result<Layout> {
     Layout layout;
-    layout.id = tree.width == 4 ? LayoutId::wide4 : LayoutId::wide8;
+    layout.id = id;
     if (tree.children.empty()) return layout;
     if (auto status = check_references(tree.references, mesh); !status) return status.error();
     layout.bounds = tree.bounds;
@@ -106,32 +146,39 @@ Result<Layout> encode_wide(const tree::WideTree& tree, const MeshView& mesh, Exe
     layout.node_count = tree.first_child.size() - 1;
     layout.reference_count = tree.references.size();
 
-    const auto children = order_children(tree);
-    std::vector<std::uint32_t> words(children.size());
-    std::size_t blocks = 0;
-    for (std::size_t c = 0; c < words.size(); ++c) {
-      const auto& child = children[c];
-      words[c] = child.first;
-      if (child.count == 0) continue;
-      const std::uint32_t count = (child.count + 3) / 4;
-      if (count > 8)
+    const Children children = order_children(tree);
+    for (std::size_t c = 0; c < children.size(); ++c) {
+      if (children[c].count > 32)
         return {ErrorCode::too_large, "a leaf of a wide layout holds at most 32 references, child " +
-                                          std::to_string(c) + " has " + std::to_string(child.count)};
-      words[c] = leaf_word(static_cast<std::uint32_t>(blocks), count);
-      blocks += count;
-      ++layout.leaf_count;
+                                          std::to_string(c) + " has " + std::to_string(children[c].count)};
+      layout.leaf_count += children[c].count != 0;
     }
+    const auto [words, blocks] = place_leaves<Blocks>(tree, children, mesh, executor);
     if (blocks > 1u << 28 || layout.node_count >= kLeafBit)
       return {ErrorCode::too_large,
               "a wide layout addresses at most 2^28 blocks of triangles, the tree needs " + std::to_string(blocks)};
-    layout.triangles = AlignedBuffer<std::byte>(blocks * sizeof(TriangleBlock));
+    layout.triangles = AlignedBuffer<std::byte>(blocks * sizeof(typename Blocks::Block));
     layout.root = 0;
-    if (tree.width == 4)
-      fill<4>(layout, tree, children, words, mesh, executor);
-    else
-      fill<8>(layout, tree, children, words, mesh, executor);
+    fill<W, Blocks>(layout, tree, children, words, mesh, executor);
     return layout;
   });
+}
+
+}  // namespace
+
+Result<Layout> encode_wide(const tree::WideTree& tree, const MeshView& mesh, Executor& executor) {
+  if (tree.width == 4) return encode<4, TriangleBlocks>(LayoutId::wide4, tree, mesh, executor);
+  if (tree.width == 8) return encode<8, TriangleBlocks>(LayoutId::wide8, tree, mesh, executor);
+  return {ErrorCode::invalid_argument, "wide layouts have 4 or 8 children a node, not " + std::to_string(tree.width)};
+}
+
+Result<Layout> encode_wide_quads(const tree::WideTree& tree, const MeshView& mesh, Executor& executor) {
+  if (tree.width != 8)
+    return {ErrorCode::invalid_argument, "wide8-quads has 8 children a node, not " + std::to_string(tree.width)};
+  if (mesh.triangle_count > kQuadIdMask + std::size_t{1})
+    return {ErrorCode::too_large,
+            "wide8-quads holds meshes of at most 2^29 triangles, not " + std::to_string(mesh.triangle_count)};
+  return encode<8, QuadBlocks>(LayoutId::wide8_quads, tree, mesh, executor);
 }
 
 }  // namespace boxwood::layouts

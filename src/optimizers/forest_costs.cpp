@@ -76,6 +76,7 @@ class Programme {
         block_(std::uint32_t(options.block)),
         largest_leaf_(largest_leaf(options)),
         node_cost_(double(options.node_cost)),
+        leaf_blocks_(options.leaf_blocks),
         out_(out) {
     // Points and segments have no area, and everything below them would be equally good. A trillionth of the root's
     // area on top of every node's makes fewer nodes and blocks better there and changes nothing elsewhere.
@@ -139,14 +140,16 @@ class Programme {
     if (node.is_leaf()) {
       part = {0, node.first, node.count};
       if (node.first > tree_.references.size() || node.count > tree_.references.size() - node.first) return false;
-      price_leaf(node_area, node.count, costs);
+      price_leaf(node_area, node.first, node.count, costs);
       return true;
     }
     if (!stack.pop(part, costs) || node.first != 2 * part.pair + 1) return false;
     Choice& choice = out_.choices[part.pair];
     double whole = node_area * node_cost_ + costs[std::size_t(width_)];
     if (part.count <= largest_leaf_) {
-      const double leaf = node_area * double(divide_up(part.count, block_));
+      // The fewest blocks first: most subtrees that are no leaf are none at any number.
+      double leaf = node_area * double(divide_up(part.count, block_));
+      if (leaf <= whole && leaf_blocks_) leaf = node_area * double(blocks_of(part.first, part.count));
       if (leaf <= whole) whole = leaf, choice.set_leaf();
     }
     costs[1] = whole;
@@ -157,8 +160,18 @@ class Programme {
   }
 
  private:
-  void price_leaf(double node_area, std::uint32_t count, Costs& costs) const {
-    const double blocks = double(divide_up(count, block_));
+  /// Blocks of a leaf, or of all chunks of one above the limit.
+  std::uint64_t blocks_of(std::uint32_t first, std::uint32_t count) const {
+    if (!leaf_blocks_) return divide_up(count, block_);
+    const std::span<const std::uint32_t> all = tree_.references.span();
+    std::uint64_t blocks = 0;
+    for (std::uint32_t done = 0; done < count; done += largest_leaf_)
+      blocks += leaf_blocks_(all.subspan(first + done, std::min(largest_leaf_, count - done)));
+    return blocks;
+  }
+
+  void price_leaf(double node_area, std::uint32_t first, std::uint32_t count, Costs& costs) const {
+    const double blocks = double(blocks_of(first, count));
     const std::uint64_t chunks = divide_up(count, largest_leaf_);
     for (int trees = 1; trees <= width_; ++trees) {
       const double nodes = double(chunk_nodes(chunks, std::uint64_t(trees), std::uint64_t(width_)));
@@ -170,6 +183,7 @@ class Programme {
   int width_;
   std::uint32_t block_, largest_leaf_;
   double node_cost_, least_area_;
+  const std::function<std::uint32_t(std::span<const std::uint32_t>)>& leaf_blocks_;
   ForestCosts& out_;
 };
 

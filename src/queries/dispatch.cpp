@@ -107,6 +107,8 @@ Result<Kernels> select_kernels(layouts::LayoutId layout, Mode mode, std::string_
       return wide4_kernels(mode, target);
     case layouts::LayoutId::wide8:
       return wide8_kernels(mode, target);
+    case layouts::LayoutId::wide8_quads:
+      return wide8_quads_kernels(mode, target);
   }
   return {ErrorCode::unknown_name, "there is no layout number " + std::to_string(static_cast<int>(layout))};
 }

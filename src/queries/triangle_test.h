@@ -75,7 +75,7 @@ inline bool robust_test(const PermutedTriangle& triangle, const RaySetup& ray, S
 /// triangle is seen edge-on.
 class Location {
  public:
-  Location(const PermutedTriangle& triangle, const RaySetup& ray) {
+  [[gnu::always_inline]] Location(const PermutedTriangle& triangle, const RaySetup& ray) {
     double x[3], y[3], z[3];
     for (int i = 0; i < 3; ++i) {
       z[i] = double(triangle.z[i]) - ray.origin[ray.kz];

@@ -11,10 +11,10 @@
 #include "builders/builder_list.h"
 #include "builders/parts/centroid_sweep.h"
 #include "builders/parts/configuration_search.h"
+#include "builders/parts/configuration_sift.h"
 #include "builders/parts/leaf_rule.h"
 #include "builders/parts/option_specs.h"
 #include "builders/parts/reference_budget.h"
-#include "builders/parts/configuration_sift.h"
 #include "builders/parts/splitting_driver.h"
 #include "builders/parts/tight_planes.h"
 

@@ -34,10 +34,11 @@ using layouts::WideNode;
 inline constexpr std::size_t kInlineStack = 256;
 
 /// The best hit so far, with where its triangle stands. u and v are kept times `sum`.
+template <class Leaf>
 struct Best {
   float t;
   std::uint32_t primitive = layouts::kInvalidPrimitive;
-  const TriangleBlock* block = nullptr;
+  const typename Leaf::Block* block = nullptr;
   int lane = 0;
   double u = 0, v = 0, sum = 1;
 
@@ -45,11 +46,6 @@ struct Best {
     return hit_t >= tmin && (hit_t < t || (hit_t == t && id < primitive));
   }
 };
-
-template <class D>
-HWY_INLINE auto load_relative(D d, const TriangleBlock& block, int corner, int axis, int lane, const RaySetup& ray) {
-  return hn::Sub(hn::Load(d, block.corner[corner][axis] + lane), hn::Set(d, ray.origin[axis]));
-}
 
 /// Lanes whose edge functions u, v, w have one sign. NaN lanes are out.
 template <class D, class V>
@@ -59,16 +55,16 @@ HWY_INLINE auto same_sign(D d, V u, V v, V w) {
 }
 
 /// Hands the lanes of `mask` to `best`, lowest lane first.
-template <class D, class V>
-HWY_INLINE void offer_lanes(D d, std::uint64_t mask, V t, V u, V v, const TriangleBlock& block, int first_lane,
-                            const RaySetup& ray, Best& best) {
-  alignas(64) float ts[4], us[4], vs[4];
+template <class Leaf, class D, class V>
+HWY_INLINE void offer_lanes(D d, std::uint64_t mask, V t, V u, V v, const typename Leaf::Block& block, int first_lane,
+                            const RaySetup& ray, Best<Leaf>& best) {
+  alignas(64) float ts[8], us[8], vs[8];
   hn::Store(t, d, ts);
   hn::Store(u, d, us);
   hn::Store(v, d, vs);
   for (; mask; mask &= mask - 1) {
     const int lane = std::countr_zero(mask);
-    const std::uint32_t id = block.primitive[first_lane + lane];
+    const std::uint32_t id = Leaf::primitive(block, first_lane + lane);
     if (best.takes(ts[lane], ray.tmin, id)) best = {ts[lane], id, &block, first_lane + lane, us[lane], vs[lane], 1};
   }
 }
@@ -80,74 +76,66 @@ HWY_INLINE std::uint64_t mask_bits(D d, hn::Mask<D> mask) {
   return bytes[0] & ((1u << hn::Lanes(d)) - 1);
 }
 
-HWY_INLINE Triangle triangle_of(const TriangleBlock& block, int lane) {
-  const auto& c = block.corner;
-  return {{c[0][0][lane], c[0][1][lane], c[0][2][lane]},
-          {c[1][0][lane], c[1][1][lane], c[1][2][lane]},
-          {c[2][0][lane], c[2][1][lane], c[2][2][lane]}};
+/// A corner in a block of planes: its coordinates are `stride` floats apart.
+struct CornerAt {
+  const float* x;
+  int stride;
+  HWY_INLINE float operator[](int axis) const { return x[axis * stride]; }
+};
+
+template <class Leaf>
+HWY_INLINE Triangle triangle_of(const typename Leaf::Block& block, int lane) {
+  const CornerAt a = Leaf::corner(block, lane, 0), b = Leaf::corner(block, lane, 1), c = Leaf::corner(block, lane, 2);
+  return {{a[0], a[1], a[2]}, {b[0], b[1], b[2]}, {c[0], c[1], c[2]}};
 }
 
-HWY_INLINE PermutedTriangle permuted(const TriangleBlock& block, int lane, const RaySetup& ray) {
-  const auto& c = block.corner;
-  return {{c[0][ray.kx][lane], c[1][ray.kx][lane], c[2][ray.kx][lane]},
-          {c[0][ray.ky][lane], c[1][ray.ky][lane], c[2][ray.ky][lane]},
-          {c[0][ray.kz][lane], c[1][ray.kz][lane], c[2][ray.kz][lane]}};
+template <class Leaf>
+HWY_INLINE PermutedTriangle permuted(const typename Leaf::Block& block, int lane, const RaySetup& ray) {
+  const CornerAt a = Leaf::corner(block, lane, 0), b = Leaf::corner(block, lane, 1), c = Leaf::corner(block, lane, 2);
+  return {{a[ray.kx], b[ray.kx], c[ray.kx]}, {a[ray.ky], b[ray.ky], c[ray.ky]}, {a[ray.kz], b[ray.kz], c[ray.kz]}};
 }
 
 /// Takes a triangle that single precision has found hit, or can't decide on, for the best hit if it is nearer. Kept out
 /// of line: the double-precision code would crowd the traversal's registers.
-HWY_NOINLINE inline void consider(const TriangleBlock& block, int lane, bool doubtful, const RaySetup& ray,
-                                  Best& best) {
-  const PermutedTriangle triangle = permuted(block, lane, ray);
+template <class Leaf>
+HWY_NOINLINE void consider(const typename Leaf::Block& block, int lane, bool doubtful, const RaySetup& ray,
+                           Best<Leaf>& best) {
+  const PermutedTriangle triangle = permuted<Leaf>(block, lane, ray);
   ShearedTriangle sheared;
   if (HWY_UNLIKELY(doubtful) && !robust_test(triangle, ray, sheared)) return;
   const Location at(triangle, ray);
-  const std::uint32_t id = block.primitive[lane];
+  const std::uint32_t id = Leaf::primitive(block, lane);
   if (best.takes(at.t(), ray.tmin, id)) best = {at.t(), id, &block, lane, at.u_times_sum(), at.v_times_sum(), at.sum()};
 }
 
-template <bool kAny>
-HWY_INLINE void robust_block(const TriangleBlock& block, const RaySetup& ray, Best& best) {
-  const hn::CappedTag<float, 4> d;
-  const int step = static_cast<int>(hn::Lanes(d));
-  const auto shear_x = hn::Set(d, ray.shear_x), shear_y = hn::Set(d, ray.shear_y);
-  for (int lane = 0; lane < 4; lane += step) {
-    const auto az = load_relative(d, block, 0, ray.kz, lane, ray);
-    const auto bz = load_relative(d, block, 1, ray.kz, lane, ray);
-    const auto cz = load_relative(d, block, 2, ray.kz, lane, ray);
-    const auto ax = hn::Sub(load_relative(d, block, 0, ray.kx, lane, ray), hn::Mul(shear_x, az));
-    const auto bx = hn::Sub(load_relative(d, block, 1, ray.kx, lane, ray), hn::Mul(shear_x, bz));
-    const auto cx = hn::Sub(load_relative(d, block, 2, ray.kx, lane, ray), hn::Mul(shear_x, cz));
-    const auto ay = hn::Sub(load_relative(d, block, 0, ray.ky, lane, ray), hn::Mul(shear_y, az));
-    const auto by = hn::Sub(load_relative(d, block, 1, ray.ky, lane, ray), hn::Mul(shear_y, bz));
-    const auto cy = hn::Sub(load_relative(d, block, 2, ray.ky, lane, ray), hn::Mul(shear_y, cz));
-    const auto u = hn::Sub(hn::Mul(cx, by), hn::Mul(cy, bx));
-    const auto v = hn::Sub(hn::Mul(ax, cy), hn::Mul(ay, cx));
-    const auto w = hn::Sub(hn::Mul(bx, ay), hn::Mul(by, ax));
-    const auto tiny = hn::Le(hn::Min(hn::Min(hn::Abs(u), hn::Abs(v)), hn::Abs(w)), hn::Set(d, kTinyEdgeFunction));
-    const std::uint64_t doubtful = mask_bits(d, tiny);
-    const std::uint64_t found = mask_bits(d, same_sign(d, u, v, w)) | doubtful;
-    if (HWY_LIKELY(!found)) continue;
-    // A hit is no nearer than the nearest corner, so a triangle that lies behind the best hit as a whole is left out.
-    const auto scale = hn::Set(d, ray.inverse_z);
-    const auto nearest = hn::Min(hn::Min(hn::Mul(az, scale), hn::Mul(bz, scale)), hn::Mul(cz, scale));
-    const auto limit = hn::Set(d, best.t * (1 + 8 * 0x1p-24f));
-    std::uint64_t mask = found & mask_bits(d, hn::Le(nearest, limit));
-    if (!mask) continue;
-    if constexpr (kAny) {
-      // And one that lies between tmin and tmax as a whole is hit, wherever exactly.
-      const auto farthest = hn::Max(hn::Max(hn::Mul(az, scale), hn::Mul(bz, scale)), hn::Mul(cz, scale));
-      const auto within = hn::And(hn::Gt(nearest, hn::Set(d, ray.tmin * (1 + 8 * 0x1p-24f))),
-                                  hn::Lt(farthest, hn::Set(d, ray.tmax * (1 - 8 * 0x1p-24f))));
-      if (const std::uint64_t sure = mask & ~doubtful & mask_bits(d, within)) {
-        best.block = &block;
-        return;
-      }
+/// The robust test from the edge functions on: u, v and w of the corners a, b and c, with any sign common to all three,
+/// and the corners' distances along the ray's main axis.
+template <class Leaf, bool kAny, class D, class V>
+HWY_INLINE void robust_lanes(D d, V u, V v, V w, V az, V bz, V cz, const typename Leaf::Block& block, int first_lane,
+                             const RaySetup& ray, Best<Leaf>& best) {
+  const auto tiny = hn::Le(hn::Min(hn::Min(hn::Abs(u), hn::Abs(v)), hn::Abs(w)), hn::Set(d, kTinyEdgeFunction));
+  const std::uint64_t doubtful = mask_bits(d, tiny);
+  const std::uint64_t found = mask_bits(d, same_sign(d, u, v, w)) | doubtful;
+  if (HWY_LIKELY(!found)) return;
+  // A hit is no nearer than the nearest corner, so a triangle that lies behind the best hit as a whole is left out.
+  const auto scale = hn::Set(d, ray.inverse_z);
+  const auto nearest = hn::Min(hn::Min(hn::Mul(az, scale), hn::Mul(bz, scale)), hn::Mul(cz, scale));
+  const auto limit = hn::Set(d, best.t * (1 + 8 * 0x1p-24f));
+  std::uint64_t mask = found & mask_bits(d, hn::Le(nearest, limit)) & Leaf::used(d, block, first_lane);
+  if (!mask) return;
+  if constexpr (kAny) {
+    // And one that lies between tmin and tmax as a whole is hit, wherever exactly.
+    const auto farthest = hn::Max(hn::Max(hn::Mul(az, scale), hn::Mul(bz, scale)), hn::Mul(cz, scale));
+    const auto within = hn::And(hn::Gt(nearest, hn::Set(d, ray.tmin * (1 + 8 * 0x1p-24f))),
+                                hn::Lt(farthest, hn::Set(d, ray.tmax * (1 - 8 * 0x1p-24f))));
+    if (const std::uint64_t sure = mask & ~doubtful & mask_bits(d, within)) {
+      best.block = &block;
+      return;
     }
-    for (; mask; mask &= mask - 1) {
-      const int i = std::countr_zero(mask);
-      consider(block, lane + i, doubtful >> i & 1, ray, best);
-    }
+  }
+  for (; mask; mask &= mask - 1) {
+    const int i = std::countr_zero(mask);
+    consider<Leaf>(block, first_lane + i, doubtful >> i & 1, ray, best);
   }
 }
 
@@ -156,38 +144,91 @@ HWY_INLINE V dot_without_fusing(D, V ax, V ay, V az, V bx, V by, V bz) {
   return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));
 }
 
-template <class D>
-HWY_INLINE auto edge(D d, const TriangleBlock& block, int corner, int axis, int lane) {
-  return hn::Sub(hn::Load(d, block.corner[corner][axis] + lane), hn::Load(d, block.corner[0][axis] + lane));
+/// The fast test on triangles given by their first corner and the edges from there to the second and the third.
+template <class Leaf, class D, class V>
+HWY_INLINE void fast_lanes(D d, V v0x, V v0y, V v0z, V e1x, V e1y, V e1z, V e2x, V e2y, V e2z,
+                           const typename Leaf::Block& block, int first_lane, const RaySetup& ray, Best<Leaf>& best) {
+  const auto dx = hn::Set(d, ray.direction[0]), dy = hn::Set(d, ray.direction[1]), dz = hn::Set(d, ray.direction[2]);
+  const auto px = hn::Sub(hn::Mul(dy, e2z), hn::Mul(dz, e2y));
+  const auto py = hn::Sub(hn::Mul(dz, e2x), hn::Mul(dx, e2z));
+  const auto pz = hn::Sub(hn::Mul(dx, e2y), hn::Mul(dy, e2x));
+  const auto determinant = dot_without_fusing(d, e1x, e1y, e1z, px, py, pz);
+  const auto sx = hn::Sub(hn::Set(d, ray.origin[0]), v0x);
+  const auto sy = hn::Sub(hn::Set(d, ray.origin[1]), v0y);
+  const auto sz = hn::Sub(hn::Set(d, ray.origin[2]), v0z);
+  const auto qx = hn::Sub(hn::Mul(sy, e1z), hn::Mul(sz, e1y));
+  const auto qy = hn::Sub(hn::Mul(sz, e1x), hn::Mul(sx, e1z));
+  const auto qz = hn::Sub(hn::Mul(sx, e1y), hn::Mul(sy, e1x));
+  const auto u = dot_without_fusing(d, sx, sy, sz, px, py, pz);
+  const auto v = dot_without_fusing(d, dx, dy, dz, qx, qy, qz);
+  const auto w = hn::Sub(hn::Sub(determinant, u), v);
+  const std::uint64_t inside = mask_bits(d, hn::And(same_sign(d, u, v, w), hn::Ne(determinant, hn::Zero(d))));
+  if (HWY_LIKELY(!inside)) return;
+  const std::uint64_t mask = inside & Leaf::used(d, block, first_lane);
+  if (!mask) return;
+  const auto r = hn::Div(hn::Set(d, 1.0f), determinant);
+  const auto t = hn::Mul(dot_without_fusing(d, e2x, e2y, e2z, qx, qy, qz), r);
+  offer_lanes<Leaf>(d, mask, t, hn::Mul(u, r), hn::Mul(v, r), block, first_lane, ray, best);
 }
 
-HWY_INLINE void fast_block(const TriangleBlock& block, const RaySetup& ray, Best& best) {
-  const hn::CappedTag<float, 4> d;
-  const int step = static_cast<int>(hn::Lanes(d));
-  const auto dx = hn::Set(d, ray.direction[0]), dy = hn::Set(d, ray.direction[1]), dz = hn::Set(d, ray.direction[2]);
-  for (int lane = 0; lane < 4; lane += step) {
-    const auto e1x = edge(d, block, 1, 0, lane), e1y = edge(d, block, 1, 1, lane), e1z = edge(d, block, 1, 2, lane);
-    const auto e2x = edge(d, block, 2, 0, lane), e2y = edge(d, block, 2, 1, lane), e2z = edge(d, block, 2, 2, lane);
-    const auto px = hn::Sub(hn::Mul(dy, e2z), hn::Mul(dz, e2y));
-    const auto py = hn::Sub(hn::Mul(dz, e2x), hn::Mul(dx, e2z));
-    const auto pz = hn::Sub(hn::Mul(dx, e2y), hn::Mul(dy, e2x));
-    const auto determinant = dot_without_fusing(d, e1x, e1y, e1z, px, py, pz);
-    const auto sx = hn::Sub(hn::Set(d, ray.origin[0]), hn::Load(d, block.corner[0][0] + lane));
-    const auto sy = hn::Sub(hn::Set(d, ray.origin[1]), hn::Load(d, block.corner[0][1] + lane));
-    const auto sz = hn::Sub(hn::Set(d, ray.origin[2]), hn::Load(d, block.corner[0][2] + lane));
-    const auto qx = hn::Sub(hn::Mul(sy, e1z), hn::Mul(sz, e1y));
-    const auto qy = hn::Sub(hn::Mul(sz, e1x), hn::Mul(sx, e1z));
-    const auto qz = hn::Sub(hn::Mul(sx, e1y), hn::Mul(sy, e1x));
-    const auto u = dot_without_fusing(d, sx, sy, sz, px, py, pz);
-    const auto v = dot_without_fusing(d, dx, dy, dz, qx, qy, qz);
-    const auto w = hn::Sub(hn::Sub(determinant, u), v);
-    const std::uint64_t inside = mask_bits(d, hn::And(same_sign(d, u, v, w), hn::Ne(determinant, hn::Zero(d))));
-    if (HWY_LIKELY(!inside)) continue;
-    const auto r = hn::Div(hn::Set(d, 1.0f), determinant);
-    const auto t = hn::Mul(dot_without_fusing(d, e2x, e2y, e2z, qx, qy, qz), r);
-    offer_lanes(d, inside, t, hn::Mul(u, r), hn::Mul(v, r), block, lane, ray, best);
+/// What the traversal asks of a kind of leaf block; the other kind is in wide_quads-inl.h.
+struct TriangleLeaf {
+  using Block = TriangleBlock;
+
+  static HWY_INLINE std::uint32_t primitive(const Block& block, int lane) { return block.primitive[lane]; }
+  /// In the mesh's order.
+  static HWY_INLINE CornerAt corner(const Block& block, int lane, int k) { return {block.corner[k][0] + lane, 4}; }
+  /// Lanes that hold a triangle, where the tests alone can't be trusted to pass over those that don't.
+  template <class D>
+  static HWY_INLINE std::uint64_t used(D, const Block&, int) {
+    return ~std::uint64_t{0};
   }
-}
+
+  template <class D>
+  static HWY_INLINE auto load_relative(D d, const Block& block, int k, int axis, int lane, const RaySetup& ray) {
+    return hn::Sub(hn::Load(d, block.corner[k][axis] + lane), hn::Set(d, ray.origin[axis]));
+  }
+
+  template <bool kAny>
+  static HWY_INLINE void robust(const Block& block, const RaySetup& ray, Best<TriangleLeaf>& best) {
+    const hn::CappedTag<float, 4> d;
+    const int step = static_cast<int>(hn::Lanes(d));
+    const auto shear_x = hn::Set(d, ray.shear_x), shear_y = hn::Set(d, ray.shear_y);
+    for (int lane = 0; lane < 4; lane += step) {
+      const auto az = load_relative(d, block, 0, ray.kz, lane, ray);
+      const auto bz = load_relative(d, block, 1, ray.kz, lane, ray);
+      const auto cz = load_relative(d, block, 2, ray.kz, lane, ray);
+      const auto ax = hn::Sub(load_relative(d, block, 0, ray.kx, lane, ray), hn::Mul(shear_x, az));
+      const auto bx = hn::Sub(load_relative(d, block, 1, ray.kx, lane, ray), hn::Mul(shear_x, bz));
+      const auto cx = hn::Sub(load_relative(d, block, 2, ray.kx, lane, ray), hn::Mul(shear_x, cz));
+      const auto ay = hn::Sub(load_relative(d, block, 0, ray.ky, lane, ray), hn::Mul(shear_y, az));
+      const auto by = hn::Sub(load_relative(d, block, 1, ray.ky, lane, ray), hn::Mul(shear_y, bz));
+      const auto cy = hn::Sub(load_relative(d, block, 2, ray.ky, lane, ray), hn::Mul(shear_y, cz));
+      const auto u = hn::Sub(hn::Mul(cx, by), hn::Mul(cy, bx));
+      const auto v = hn::Sub(hn::Mul(ax, cy), hn::Mul(ay, cx));
+      const auto w = hn::Sub(hn::Mul(bx, ay), hn::Mul(by, ax));
+      robust_lanes<TriangleLeaf, kAny>(d, u, v, w, az, bz, cz, block, lane, ray, best);
+      if (kAny && best.block) return;
+    }
+  }
+
+  template <class D>
+  static HWY_INLINE auto edge(D d, const Block& block, int k, int axis, int lane) {
+    return hn::Sub(hn::Load(d, block.corner[k][axis] + lane), hn::Load(d, block.corner[0][axis] + lane));
+  }
+
+  static HWY_INLINE void fast(const Block& block, const RaySetup& ray, Best<TriangleLeaf>& best) {
+    const hn::CappedTag<float, 4> d;
+    const int step = static_cast<int>(hn::Lanes(d));
+    for (int lane = 0; lane < 4; lane += step) {
+      const auto e1x = edge(d, block, 1, 0, lane), e1y = edge(d, block, 1, 1, lane), e1z = edge(d, block, 1, 2, lane);
+      const auto e2x = edge(d, block, 2, 0, lane), e2y = edge(d, block, 2, 1, lane), e2z = edge(d, block, 2, 2, lane);
+      fast_lanes<TriangleLeaf>(d, hn::Load(d, block.corner[0][0] + lane), hn::Load(d, block.corner[0][1] + lane),
+                               hn::Load(d, block.corner[0][2] + lane), e1x, e1y, e1z, e2x, e2y, e2z, block, lane, ray,
+                               best);
+    }
+  }
+};
 
 /// Children of a node that the ray meets within [tmin, tmax], as bits, with their entry distances.
 template <int W>
@@ -259,28 +300,29 @@ HWY_INLINE std::uint32_t push_children(const WideNode<W>& node, std::uint32_t hi
   return static_cast<std::uint32_t>(*--top);
 }
 
-template <int W, bool kRobust, bool kAny, bool kCount>
-HWY_INLINE bool traverse(const Layout& layout, const RaySetup& ray, StackEntry* const stack, Best& best,
+template <int W, class Leaf, bool kRobust, bool kAny, bool kCount>
+HWY_INLINE bool traverse(const Layout& layout, const RaySetup& ray, StackEntry* const stack, Best<Leaf>& best,
                          Counts* counts) {
   const auto* nodes = reinterpret_cast<const WideNode<W>*>(layout.nodes.data());
-  const auto* blocks = reinterpret_cast<const TriangleBlock*>(layout.triangles.data());
+  using Block = typename Leaf::Block;
+  const auto* blocks = reinterpret_cast<const Block*>(layout.triangles.data());
   StackEntry* top = stack;
   std::uint32_t word = layout.root;
   alignas(64) float entry[W];
   for (;;) {
     if (word & layouts::kLeafBit) {
-      const TriangleBlock* block = blocks + layouts::leaf_first(word);
-      const TriangleBlock* const end = block + layouts::leaf_blocks(word);
+      const Block* block = blocks + layouts::leaf_first(word);
+      const Block* const end = block + layouts::leaf_blocks(word);
       if constexpr (kCount) {
         ++counts->leaves;
-        for (const TriangleBlock* b = block; b != end; ++b)
+        for (const Block* b = block; b != end; ++b)
           for (std::uint32_t id : b->primitive) counts->primitives += id != layouts::kInvalidPrimitive;
       }
       for (; block != end; ++block) {
         if constexpr (kRobust)
-          robust_block<kAny>(*block, ray, best);
+          Leaf::template robust<kAny>(*block, ray, best);
         else
-          fast_block(*block, ray, best);
+          Leaf::fast(*block, ray, best);
         if (kAny && best.block) return true;
       }
     } else {
@@ -301,13 +343,13 @@ HWY_INLINE bool traverse(const Layout& layout, const RaySetup& ray, StackEntry* 
 }
 
 /// Runs one ray with a stack that is large enough and reports through `done(best, setup)`.
-template <int W, bool kRobust, bool kAny, bool kCount>
-HWY_INLINE bool trace(const Layout& layout, const Ray& ray, RaySetup& setup, Best& best, StackEntry* stack,
+template <int W, class Leaf, bool kRobust, bool kAny, bool kCount>
+HWY_INLINE bool trace(const Layout& layout, const Ray& ray, RaySetup& setup, Best<Leaf>& best, StackEntry* stack,
                       Counts* counts) {
   if constexpr (kCount) counts->rays = 1;
   if (layout.root == layouts::kNoRoot || !set_up(ray, layout.bounds, setup)) return false;
   best.t = setup.tmax;
-  const bool hit = traverse<W, kRobust, kAny, kCount>(layout, setup, stack, best, counts);
+  const bool hit = traverse<W, Leaf, kRobust, kAny, kCount>(layout, setup, stack, best, counts);
   if constexpr (kCount) counts->hits = hit;
   return hit;
 }
@@ -325,54 +367,55 @@ class Stack {
   std::unique_ptr<StackEntry[]> heap_;
 };
 
-HWY_INLINE Hit make_hit(const RaySetup& ray, const Best& best) {
+template <class Leaf>
+HWY_INLINE Hit make_hit(const RaySetup& ray, const Best<Leaf>& best) {
   return {best.t * ray.t_scale, static_cast<float>(best.u / best.sum), static_cast<float>(best.v / best.sum),
           best.primitive};
 }
 
-template <int W, bool kRobust, bool kCount>
+template <int W, class Leaf, bool kRobust, bool kCount>
 void closest(const Layout& layout, const Ray* rays, std::size_t count, Hit* hits, Vec3* normals, Counts* per_ray) {
   Stack stack(layout.max_stack + W);
   for (std::size_t i = 0; i < count; ++i) {
     RaySetup setup;
-    Best best;
+    Best<Leaf> best;
     if constexpr (kCount) per_ray[i] = {};
-    const bool hit =
-        trace<W, kRobust, false, kCount>(layout, rays[i], setup, best, stack.data(), kCount ? per_ray + i : nullptr);
+    const bool hit = trace<W, Leaf, kRobust, false, kCount>(layout, rays[i], setup, best, stack.data(),
+                                                            kCount ? per_ray + i : nullptr);
     hits[i] = hit ? make_hit(setup, best) : Hit{};
     if (!normals) continue;
     normals[i] = {};
     if (!hit) continue;
-    normals[i] = triangle_of(*best.block, best.lane).normal();
+    normals[i] = triangle_of<Leaf>(*best.block, best.lane).normal();
   }
 }
 
-template <int W, bool kRobust, bool kCount>
+template <int W, class Leaf, bool kRobust, bool kCount>
 void any(const Layout& layout, const Ray* rays, std::size_t count, std::uint8_t* occluded, Counts* per_ray) {
   Stack stack(layout.max_stack + W);
   for (std::size_t i = 0; i < count; ++i) {
     RaySetup setup;
-    Best best;
+    Best<Leaf> best;
     if constexpr (kCount) per_ray[i] = {};
-    occluded[i] =
-        trace<W, kRobust, true, kCount>(layout, rays[i], setup, best, stack.data(), kCount ? per_ray + i : nullptr);
+    occluded[i] = trace<W, Leaf, kRobust, true, kCount>(layout, rays[i], setup, best, stack.data(),
+                                                        kCount ? per_ray + i : nullptr);
   }
 }
 
-template <int W, bool kRobust>
+template <int W, class Leaf, bool kRobust>
 Kernels make_kernels() {
   return {
       [](const Layout& l, const Ray* r, std::size_t n, Hit* h, Vec3* normals) {
-        closest<W, kRobust, false>(l, r, n, h, normals, nullptr);
+        closest<W, Leaf, kRobust, false>(l, r, n, h, normals, nullptr);
       },
       [](const Layout& l, const Ray* r, std::size_t n, std::uint8_t* o) {
-        any<W, kRobust, false>(l, r, n, o, nullptr);
+        any<W, Leaf, kRobust, false>(l, r, n, o, nullptr);
       },
       [](const Layout& l, const Ray* r, std::size_t n, Hit* h, Counts* c) {
-        closest<W, kRobust, true>(l, r, n, h, nullptr, c);
+        closest<W, Leaf, kRobust, true>(l, r, n, h, nullptr, c);
       },
       [](const Layout& l, const Ray* r, std::size_t n, std::uint8_t* o, Counts* c) {
-        any<W, kRobust, true>(l, r, n, o, c);
+        any<W, Leaf, kRobust, true>(l, r, n, o, c);
       },
   };
 }

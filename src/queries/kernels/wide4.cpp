@@ -13,7 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace boxwood::queries::HWY_NAMESPACE {
 
 Kernels wide4_kernels(Mode mode) {
-  return mode == Mode::robust ? make_kernels<4, true>() : make_kernels<4, false>();
+  return mode == Mode::robust ? make_kernels<4, TriangleLeaf, true>() : make_kernels<4, TriangleLeaf, false>();
 }
 
 }  // namespace boxwood::queries::HWY_NAMESPACE

@@ -13,7 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace boxwood::queries::HWY_NAMESPACE {
 
 Kernels wide8_kernels(Mode mode) {
-  return mode == Mode::robust ? make_kernels<8, true>() : make_kernels<8, false>();
+  return mode == Mode::robust ? make_kernels<8, TriangleLeaf, true>() : make_kernels<8, TriangleLeaf, false>();
 }
 
 }  // namespace boxwood::queries::HWY_NAMESPACE

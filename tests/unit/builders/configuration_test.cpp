@@ -5,9 +5,9 @@
 
 #include "builders/parts/centroid_sweep.h"
 #include "builders/parts/configuration_search.h"
+#include "builders/parts/configuration_sift.h"
 #include "builders/parts/counting_tree.h"
 #include "builders/parts/median_price.h"
-#include "builders/parts/configuration_sift.h"
 #include "builders/parts/tight_planes.h"
 #include "unit/builders/reference_shapes.h"
 

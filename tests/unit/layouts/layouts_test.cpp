@@ -23,6 +23,7 @@ Result<Layout> encode(LayoutId id, const tree::BinaryTree& tree, const MeshView&
   if (id == LayoutId::linear) return encode_linear(tree, mesh, executor);
   auto wide = optimizers::collapse_to_wide(tree, {.width = id == LayoutId::wide4 ? 4 : 8}, executor);
   EXPECT_TRUE(wide) << wide.error().message;
+  if (id == LayoutId::wide8_quads) return encode_wide_quads(*wide, mesh, executor);
   return encode_wide(*wide, mesh, executor);
 }
 
@@ -89,6 +90,16 @@ TEST(Layouts, CheckerFindsCorruption) {
       expect_found(
           [](Layout& l) { reinterpret_cast<TriangleBlock*>(l.triangles.data())[0].primitive[0] = kInvalidPrimitive; },
           "unused lane");
+    } else if (row.id == LayoutId::wide8_quads) {
+      const auto words = [](Layout& l) { return reinterpret_cast<QuadBlock*>(l.triangles.data())[0].primitive; };
+      expect_found(
+          [](Layout& l) { reinterpret_cast<WideNode<8>*>(l.nodes.data())[0].child[0] = leaf_word(1 << 27, 1); },
+          "past the blocks");
+      expect_found([&](Layout& l) { words(l)[0] = 5000; }, "past the mesh");
+      expect_found([&](Layout& l) { words(l)[0] |= 3 * kQuadTurnBit; }, "turned");
+      expect_found([&](Layout& l) { words(l)[0] |= kQuadFlipBit; }, "differs");
+      expect_found([&](Layout& l) { words(l)[0] = kInvalidPrimitive; }, "unused lane");
+      expect_found([&](Layout& l) { words(l)[4] = 7; }, "differs");
     }
   }
 }
@@ -103,6 +114,13 @@ TEST(Layouts, RefuseWhatTheyCanNotHold) {
   wide->width = 8;
   wide->children[0].count = 33;
   EXPECT_EQ(encode_wide(*wide, mesh, executor).error().code, ErrorCode::too_large);
+  EXPECT_EQ(encode_wide_quads(*wide, mesh, executor).error().code, ErrorCode::too_large);
+  wide->width = 4;
+  EXPECT_EQ(encode_wide_quads(*wide, mesh, executor).error().code, ErrorCode::invalid_argument);
+  wide->width = 8;
+  MeshView huge = mesh;
+  huge.triangle_count = (std::size_t{1} << 29) + 1;
+  EXPECT_EQ(encode_wide_quads(*wide, huge, executor).error().code, ErrorCode::too_large);
   TriangleMesh shorter = mesh;
   shorter.triangles.resize(50);
   EXPECT_EQ(encode_linear(tree, shorter, executor).error().code, ErrorCode::out_of_range);

@@ -325,6 +325,27 @@ TEST(CollapseToWide, same_bits_on_every_executor) {
   }
 }
 
+// Blocks of eight that say they hold four are blocks of four.
+TEST(CollapseToWide, asks_how_many_blocks_a_leaf_takes) {
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    const auto binary = random_tree(seed, 400, seed % 2 ? 3 : 40, 1.0f);
+    CollapseOptions fours{.block = 4, .max_leaf_blocks = 4}, eights{.block = 8, .max_leaf_blocks = 2};
+    eights.leaf_blocks = [&](std::span<const std::uint32_t> references) {
+      EXPECT_LE(references.size(), 16u);
+      EXPECT_GE(references.data(), binary.references.data());
+      EXPECT_LE(&references.back(), &binary.references[binary.references.size() - 1]);
+      return std::uint32_t(references.size() + 3) / 4;
+    };
+    expect_equal(collapse(binary, fours), collapse(binary, eights));
+  }
+  // And where every reference takes a block of its own, large leaves don't pay.
+  const auto binary = random_tree(3, 400, 1, 1.0f);
+  CollapseOptions options{.block = 8};
+  const auto full = collapse(binary, options);
+  options.leaf_blocks = [](std::span<const std::uint32_t> references) { return std::uint32_t(references.size()); };
+  EXPECT_LT(full.first_child.size(), collapse(binary, options).first_child.size());
+}
+
 TEST(CollapseToWide, refuses_options_out_of_range) {
   const auto binary = random_tree(1, 5, 2);
   SequentialExecutor executor;
