@@ -1,4 +1,5 @@
 // All builders on all meshes: what each costs to build and what rays cost then. Not a paper's table, but its question.
+#include <algorithm>
 #include <cmath>
 
 #include "reproduce/cells.h"
@@ -15,6 +16,21 @@ struct Means {
   double log_build = 0, log_speed = 0;
   int count = 0;
 };
+
+/// The builders that none beats in both, connected.
+Chart::Series pareto_front(const std::vector<Chart::Series>& builders) {
+  Chart::Series front{.name = "Pareto front", .points = {}};
+  for (const Chart::Series& builder : builders) {
+    const std::pair<double, double> point = builder.points[0];  // build time, speed
+    const bool is_beaten = std::any_of(builders.begin(), builders.end(), [&](const Chart::Series& other) {
+      const auto& [time, speed] = other.points[0];
+      return time <= point.first && speed >= point.second && (time < point.first || speed > point.second);
+    });
+    if (!is_beaten) front.points.push_back(point);
+  }
+  std::sort(front.points.begin(), front.points.end());
+  return front;
+}
 
 }  // namespace
 
@@ -37,8 +53,8 @@ Result<TableResult> compare_builders(Laboratory& laboratory, const std::vector<S
               .x = "build time, x of sweep-sah's (geometric mean of the meshes)",
               .y = "random rays, x of sweep-sah's",
               .series = {},
-              .lines = false,
-              .log_x = true};
+              .log_x = true,
+              .from_zero = false};
   std::map<std::string, Means> means;
   for (const Subject& subject : subjects) {
     std::optional<double> base_build, base_speed;
@@ -82,8 +98,10 @@ Result<TableResult> compare_builders(Laboratory& laboratory, const std::vector<S
     const double count = mean->second.count;
     chart.series.push_back({builder.id,
                             {{std::exp(mean->second.log_build / count), std::exp(mean->second.log_speed / count)}},
-                            {builder.id}});
+                            {builder.id},
+                            false});
   }
+  chart.series.push_back(pareto_front(chart.series));
   // The baseline is not the first row of a mesh, so its ratios are found per mesh.
   std::map<std::string, std::vector<Cell>> base;
   for (const Row& row : table.rows)

@@ -251,7 +251,7 @@ Result<TableResult> popov_overlap_penalty(Laboratory& laboratory, const std::vec
               .x = "overlap penalty C_O + 1",
               .y = "cost per random ray",
               .series = {},
-              .lines = true,
+
               .log_x = true};
   for (const char* penalty : kPenalties) table.columns.push_back({fmt::format("C_O = {}", penalty), 1});
   for (const Subject& subject : subjects) {

@@ -91,15 +91,37 @@ std::string frame(const Chart& chart, const Axis& x, const Axis& y) {
   return out;
 }
 
-std::string series_marks(const Chart::Series& series, const char* color, bool lines, const Axis& x, const Axis& y) {
+/// Words beside points that do not run into each other: each moves down until it is free of the earlier ones.
+class Labels {
+ public:
+  std::string add(double x, double y, const std::string& text) {
+    constexpr double kLine = 11, kCharacter = 5.6;
+    const double width = kCharacter * static_cast<double>(text.size());
+    const auto hits = [&](const Place& other) {
+      return std::fabs(other.y - y) < kLine && x < other.x + other.width && other.x < x + width;
+    };
+    while (std::any_of(places_.begin(), places_.end(), hits)) y += kLine;
+    places_.push_back({x, y, width});
+    return words(x, y, text, "start", 10);
+  }
+
+ private:
+  struct Place {
+    double x, y, width;
+  };
+  std::vector<Place> places_;
+};
+
+std::string series_marks(const Chart::Series& series, const char* color, const Axis& x, const Axis& y, Labels& labels) {
   std::string out, path;
   for (std::size_t i = 0; i < series.points.size(); ++i) {
     const double px = x.place(series.points[i].first), py = y.place(series.points[i].second);
     path += fmt::format("{}{:.1f} {:.1f}", i ? "L" : "M", px, py);
-    out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>\n", px, py, lines ? 2.2 : 4, color);
-    if (i < series.labels.size()) out += words(px + 6, py - 5, series.labels[i], "start", 10);
+    out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>\n", px, py, series.line ? 2.2 : 4,
+                       color);
+    if (i < series.labels.size()) out += labels.add(px + 6, py - 5, series.labels[i]);
   }
-  if (lines && !path.empty())
+  if (series.line && !path.empty())
     out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.8\"/>\n", path, color);
   return out;
 }
@@ -108,7 +130,7 @@ std::string series_marks(const Chart::Series& series, const char* color, bool li
 
 std::string svg(const Chart& chart) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
-  double low_x = kNone, high_x = -kNone, low_y = 0, high_y = -kNone;
+  double low_x = kNone, high_x = -kNone, low_y = chart.from_zero ? 0 : kNone, high_y = -kNone;
   for (const Chart::Series& series : chart.series)
     for (const auto& [x, y] : series.points) {
       low_x = std::min(low_x, x), high_x = std::max(high_x, x);
@@ -121,10 +143,13 @@ std::string svg(const Chart& chart) {
       "font-family=\"sans-serif\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n",
       kWidth, kHeight);
   out += frame(chart, x, y);
+  Labels labels;
+  std::size_t legend = 0;
   for (std::size_t s = 0; s < chart.series.size(); ++s) {
     const char* const color = kColors[s % std::size(kColors)];
-    out += series_marks(chart.series[s], color, chart.lines, x, y);
-    const double at = kTop + 12 + 18 * static_cast<double>(s);
+    out += series_marks(chart.series[s], color, x, y, labels);
+    if (!chart.series[s].labels.empty()) continue;
+    const double at = kTop + 12 + 18 * static_cast<double>(legend++);
     out += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"12\" height=\"4\" fill=\"{}\"/>\n",
                        kWidth - kRight + 14, at - 6, color);
     out += words(kWidth - kRight + 32, at, chart.series[s].name, "start");

@@ -11,14 +11,15 @@ struct Chart {
   struct Series {
     std::string name;
     std::vector<std::pair<double, double>> points;
-    std::vector<std::string> labels = {};  ///< beside the points; empty: none
+    std::vector<std::string> labels = {};  ///< beside the points, instead of a line in the legend; empty: none
+    bool line = true;                      ///< points are connected
   };
 
   std::string name;  ///< of the file, without its ending
   std::string title, x, y;
   std::vector<Series> series;
-  bool lines = true;  ///< points are connected
   bool log_x = false;
+  bool from_zero = true;  ///< the vertical axis begins at zero
 };
 
 /// A picture of 760 x 460 that any browser shows, light background. Charts without points are an empty frame.
