@@ -55,7 +55,8 @@ class SplittingDriver {
     large[0].measure();
     large[0].cell = large[0].bounds;
     large[0].spare = spare;
-    set.references = {};
+    // Spelt out: clang 14 forgets to emit the destructor for "= {}" in a template.
+    set.references = AlignedBuffer<refs::Reference>();
     top_.push_back({large[0].bounds, 0, 0});
     std::vector<std::uint32_t> slots{0};  // the top nodes of the ranges
     std::vector<SplittingRange> small;
