@@ -189,7 +189,7 @@ class SplittingDriver {
         for (const refs::Reference& reference : range.references) out.ids.push_back(reference.primitive);
       }
     }
-    refit(out.nodes);
+    if (stack.empty()) refit(out.nodes);  // else cancelled, and some nodes were never filled in
     return out;
   }
 
