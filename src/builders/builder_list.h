@@ -5,9 +5,9 @@
 #include "boxwood/builders.h"
 
 // In the order they are listed to people. A row is the id with '_' for '-'.
-#define BOXWOOD_BUILDER_LIST(row)                                                                                 \
-  row(binned_sah) row(sweep_sah) row(middle) row(equal_counts) row(lbvh) row(hlbvh) row(ploc) row(aac) row(ebbvh) \
-      row(ebbvh_gated) row(spatial_split) row(sbvh) row(geometric) row(generic) row(kd)
+#define BOXWOOD_BUILDER_LIST(row)                                                                              \
+  row(binned_sah) row(sweep_sah) row(middle) row(equal_counts) row(area_median) row(lbvh) row(hlbvh) row(ploc) \
+      row(aac) row(ebbvh) row(ebbvh_gated) row(spatial_split) row(sbvh) row(geometric) row(generic) row(kd)
 
 namespace boxwood::builders {
 
