@@ -5,7 +5,7 @@ set -euo pipefail
 
 program=$1
 out=$2
-scene=scene:atrium,triangles=100000
+scene=scene:atrium,triangles=50000
 mkdir -p "$out"
 
 echo
@@ -16,6 +16,6 @@ echo "== Every builder on $scene: build time, expected cost Exp(T), work per ray
 "$program" render "$scene" --quiet --size 960x640 --shade nodes -o "$out/atrium_nodes.png"
 
 echo
-echo "Done: every builder made a tree of the atrium's triangles (about 100,000) and traced the same rays through it (the table" \
+echo "Done: every builder made a tree of the atrium's triangles (about 50,000) and traced the same rays through it (the table" \
   "above), and the view is in $out/atrium.png, with the nodes each pixel visited in $out/atrium_nodes.png; next try" \
   "your own mesh: $program bench YOUR_MESH.ply --builders all"

@@ -72,6 +72,14 @@ Status build_own(Own& own, const BenchPlan& plan, const Input& input, std::size_
   return {};
 }
 
+/// Builds that take long are measured once: their spread is small beside what repeating them costs.
+constexpr double kLongBuildMilliseconds = 2000;
+
+bool is_long_build(const Own& own, std::size_t thread_index) {
+  const std::vector<double>& measured = own.figures[0]->milliseconds[thread_index];
+  return !measured.empty() && measured[0] > kLongBuildMilliseconds;
+}
+
 Status build_rival(Rival& rival, const BenchPlan& plan, const Input& input, std::size_t thread_index) {
   auto embree = rivals::EmbreeRival::open(input.mesh, rival.quality, rival.mode == queries::Mode::robust);
   if (!embree) return embree.error();
@@ -139,7 +147,8 @@ Result<std::vector<Contestant>> build_contestants(const BenchPlan& plan, const I
     for (std::size_t t = 0; t < plan.thread_counts.size(); ++t) {
       for (Own& o : own) {
         progress.label(fmt::format("{}: building {}", input.mesh.name, o.options->builder));
-        if (Status status = build_own(o, plan, input, t, executors, session); !status) return status.error();
+        if (!is_long_build(o, t))
+          if (Status status = build_own(o, plan, input, t, executors, session); !status) return status.error();
         progress.update(++done / steps);
       }
       for (Rival& r : rivals) {

@@ -296,7 +296,7 @@ void BenchOptions::add_to(CLI::App& command) {
   command.add_option("--seed", seed, "Seed of random, diffuse and occlusion rays and of lines")
       ->type_name("S")
       ->capture_default_str();
-  command.add_option("--repeat", repeat, "Measurements of each build and each trace")
+  command.add_option("--repeat", repeat, "Measurements of each trace, and of each build that takes under two seconds")
       ->check(CLI::Range(1, 1000).description(""))
       ->type_name("N")
       ->capture_default_str();
