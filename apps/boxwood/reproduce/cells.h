@@ -36,6 +36,10 @@ inline std::string scene_label(const Subject& subject) {
   return fmt::format("{} ({})", subject.paper_scene, subject.label);
 }
 
+/// Those that are scenes of the paper, or all when none is: tables whose builds are dear don't measure more than the
+/// paper did.
+std::vector<Subject> of_paper(const std::vector<Subject>& subjects);
+
 /// What was measured on, for a table's head.
 std::string subject_note(const std::vector<Subject>& subjects);
 /// How rays were made and timed.

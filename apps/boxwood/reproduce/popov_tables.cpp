@@ -64,8 +64,9 @@ Status add_full_row(Laboratory& laboratory, const Subject& subject, const NamedM
   return {};
 }
 
-Result<TableResult> full_table(Laboratory& laboratory, const std::vector<Subject>& subjects, PaperTable table,
+Result<TableResult> full_table(Laboratory& laboratory, const std::vector<Subject>& given, PaperTable table,
                                const std::vector<NamedMethod>& methods, std::span<const PopovFullRow> paper) {
+  const std::vector<Subject> subjects = of_paper(given);
   table.notes = {
       subject_note(subjects), ray_note(laboratory.effort()),
       "C_T = 2, C_I = 3; Cost = nodes + 1.5 x triangles per random ray. Packets trace primary rays. The paper's "
@@ -102,7 +103,8 @@ NamedMethod spatial(const char* name, const char* growth) {
 
 }  // namespace
 
-Result<TableResult> popov_recursive_cost(Laboratory& laboratory, const std::vector<Subject>& subjects) {
+Result<TableResult> popov_recursive_cost(Laboratory& laboratory, const std::vector<Subject>& given) {
+  const std::vector<Subject> subjects = of_paper(given);
   struct Measure {
     const char* name;
     const char* terminates;
@@ -156,7 +158,8 @@ Result<TableResult> popov_recursive_cost(Laboratory& laboratory, const std::vect
   return TableResult{std::move(table)};
 }
 
-Result<TableResult> popov_presplit(Laboratory& laboratory, const std::vector<Subject>& subjects) {
+Result<TableResult> popov_presplit(Laboratory& laboratory, const std::vector<Subject>& given) {
+  const std::vector<Subject> subjects = of_paper(given);
   const auto with = [](const char* name, const char* presplit) {
     return NamedMethod{name, {"sweep-sah", popov_cost(), presplit}};
   };
@@ -238,7 +241,8 @@ Result<TableResult> popov_generic(Laboratory& laboratory, const std::vector<Subj
                     popov_generic_rows());
 }
 
-Result<TableResult> popov_overlap_penalty(Laboratory& laboratory, const std::vector<Subject>& subjects) {
+Result<TableResult> popov_overlap_penalty(Laboratory& laboratory, const std::vector<Subject>& given) {
+  const std::vector<Subject> subjects = of_paper(given);
   constexpr const char* kPenalties[] = {"0", "1", "10", "100", "1000", "10000", "1e16"};
   PaperTable table;
   table.id = "popov-6";
