@@ -127,8 +127,8 @@ Result<TableResult> popov_recursive_cost(Laboratory& laboratory, const std::vect
   table.labels = {"scene", "measure", "rays end"};
   table.columns = {{"centroid sweep", 1}, {"grid, recursive cost", 1}};
   for (const Subject& subject : subjects) {
-    const bool of_paper = subject.paper_scene == "SPONZA";
-    const auto paper = [&](double value) { return paper_cell(of_paper ? std::optional(value) : std::nullopt); };
+    const bool is_sponza = subject.paper_scene == "SPONZA";
+    const auto paper = [&](double value) { return paper_cell(is_sponza ? std::optional(value) : std::nullopt); };
     Row exp{{scene_label(subject), "Exp", "-"}, {paper(142.6), paper(124.0)}};
     for (std::size_t m = 0; m < 2; ++m) {
       const Status status = fill(laboratory, subject, methods[m], exp.cells[m], [&]() -> Result<double> {
