@@ -7,7 +7,7 @@ import unittest
 
 from support import CommandLineTest, write_ply
 
-SMALL = "scene:atrium,triangles=1200"
+SMALL = "scene:atrium,triangles=400"
 QUICK = ["--size", "16x16", "--random-rays", 400, "--repeat", 1, "--threads", 2]
 TABLES = ["ebbvh-1", "ebbvh-2", "ebbvh-3", "evh-1", "evh-4", "evh-5", "popov-1", "popov-2", "popov-3", "popov-4",
           "popov-6", "builders"]
