@@ -17,6 +17,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "builders/parts/build_monitor.h"
@@ -129,5 +130,24 @@ class TopDownDriver {
   AlignedBuffer<tree::Node> nodes_;
   AlignedBuffer<std::uint32_t> ids_;
 };
+
+/// The tree of `set` that a finder which owns its references makes. `make_finder(ReferenceSet&&)` returns the finder;
+/// its `root(Executor&)` is the range of all references.
+template <class MakeFinder>
+Result<tree::BinaryTree> build_top_down(refs::ReferenceSet&& set, const BuildContext& context,
+                                        const MakeFinder& make_finder, std::size_t large_range = kLargeRange) {
+  const std::size_t count = set.references.size();
+  const std::size_t primitive_count = set.primitive_count;
+  AlignedBuffer<tree::Node> nodes;
+  AlignedBuffer<std::uint32_t> ids;
+  {
+    auto finder = make_finder(std::move(set));
+    TopDownDriver<decltype(finder)> driver(finder, count, context, large_range);
+    if (!driver.run(finder.root(context.executor))) return cancelled_error();
+    nodes = std::move(driver.nodes());
+    ids = std::move(driver.ids());
+  }  // the references are no longer needed: their memory goes before the canonical copy is made
+  return tree::canonicalize(nodes.span(), ids.span(), primitive_count, false, context.executor);
+}
 
 }  // namespace boxwood::builders
