@@ -43,7 +43,7 @@ void PipelineOptions::add_to(CLI::App& command) {
       ->capture_default_str();
   add_settings_option(command, settings);
   add_presplit_option(command, presplit);
-  command.add_option("-l,--layout", layout, "Node layout: linear, wide4, wide8 or wide8-quads")
+  command.add_option("-l,--layout", layout, "Node layout: linear, wide4, wide8, wide8-quads, wide16 or wide16-quads")
       ->type_name("NAME")
       ->capture_default_str();
 }

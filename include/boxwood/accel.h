@@ -16,7 +16,7 @@ namespace boxwood {
 struct AccelOptions {
   builders::BuildOptions build = {};  ///< builder id and its settings
   std::string presplit = "none";      ///< how to split references first: what refs::parse_presplit reads
-  std::string layout = "wide8";       ///< linear, wide4, wide8 or wide8-quads
+  std::string layout = "wide8";       ///< linear, wide4, wide8, wide8-quads, wide16 or wide16-quads
   std::string isa = {};               ///< empty = environment variable BOXWOOD_ISA, or the best the processor has
   /// Runs the build and later the batch queries. Null = a pool of its own over all processors.
   std::shared_ptr<Executor> executor = {};

@@ -18,11 +18,11 @@ Result<layouts::Layout> encode(layouts::LayoutId id, const tree::BinaryTree& tre
                                Executor& executor) {
   if (id == layouts::LayoutId::linear) return layouts::encode_linear(tree, mesh, executor);
   optimizers::CollapseOptions options;
-  options.width = id == layouts::LayoutId::wide4 ? 4 : 8;
+  options.width = layouts::width(id);
   // A node visit costs about one and a half block tests in the kernels; the surface area cost decides on leaf sizes.
   options.node_cost = 1.5f;
   options.max_leaf_blocks = 4;
-  const bool quads = id == layouts::LayoutId::wide8_quads;
+  const bool quads = layouts::has_quads(id);
   if (quads) {
     // Pricing looks at the triangles, before the encoder could find one that is not there.
     if (auto status = layouts::check_references(tree.references.span(), mesh); !status) return status.error();

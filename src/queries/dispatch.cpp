@@ -109,6 +109,10 @@ Result<Kernels> select_kernels(layouts::LayoutId layout, Mode mode, std::string_
       return wide8_kernels(mode, target);
     case layouts::LayoutId::wide8_quads:
       return wide8_quads_kernels(mode, target);
+    case layouts::LayoutId::wide16:
+      return wide16_kernels(mode, target);
+    case layouts::LayoutId::wide16_quads:
+      return wide16_quads_kernels(mode, target);
   }
   return {ErrorCode::unknown_name, "there is no layout number " + std::to_string(static_cast<int>(layout))};
 }
