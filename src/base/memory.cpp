@@ -1,5 +1,5 @@
-// Memory of AlignedBuffer. Blocks of a megabyte and more ask the system for huge pages: a build touches hundreds of
-// megabytes once, and one page fault for 2 MiB costs little more than one for 4 KiB (on virtual machines less than a
+// Memory of AlignedBuffer. Blocks of half a megabyte and more ask the system for huge pages: a build touches hundreds
+// of megabytes once, and one page fault for 2 MiB costs little more than one for 4 KiB (on virtual machines less than a
 // hundredth of the 512 that it replaces).
 #include <new>
 
@@ -13,11 +13,12 @@ namespace boxwood::memory {
 namespace {
 
 constexpr std::size_t kHugePage = std::size_t{1} << 21;
+constexpr std::size_t kWorthAPage = kHugePage / 4;
 
-/// How many bytes of a block are to be huge pages: all but a rest of less than half of one.
+/// How many bytes of a block are to be huge pages: all but a rest that isn't worth one.
 std::size_t huge_part(std::size_t bytes) {
 #if defined(__linux__)
-  return bytes > SIZE_MAX - kHugePage ? 0 : (bytes + kHugePage / 2) / kHugePage * kHugePage;
+  return bytes > SIZE_MAX - kHugePage ? 0 : (bytes + kHugePage - kWorthAPage) / kHugePage * kHugePage;
 #else
   return bytes - bytes;
 #endif

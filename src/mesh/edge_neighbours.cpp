@@ -30,9 +30,7 @@ class SideTable {
     if (executor.threads() == 1)
       fill([](std::uint64_t& counter) { return counter++; });
     else
-      fill([](std::uint64_t& counter) {
-        return std::atomic_ref(counter).fetch_add(1, std::memory_order_relaxed);
-      });
+      fill([](std::uint64_t& counter) { return std::atomic_ref(counter).fetch_add(1, std::memory_order_relaxed); });
   }
 
   AlignedBuffer<EdgeNeighbours> neighbours() {

@@ -1,4 +1,5 @@
-// A mesh whose vertices are all usable, as nearly all are, has no other triangles; only else each one is looked at. O(n).
+// A mesh whose vertices are all usable, as nearly all are, has no other triangles; only else each one is looked at.
+// O(n).
 #include "mesh/usable.h"
 
 #include "mesh/chunks.h"

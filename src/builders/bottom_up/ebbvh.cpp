@@ -98,7 +98,7 @@ const Tops kTops("middle"), kGatedTops("binned-sah");
 const std::array<OptionSpec, 7> kOptions{kWeldOption,         top_option(kTops),   rounds_option(0), kPairCutoffOption,
                                          gate_area_option(0), gate_size_option(0), kLeafMaxOption};
 const std::array<OptionSpec, 7> kGatedOptions{kWeldOption,       top_option(kGatedTops), rounds_option(1),
-                                              kPairCutoffOption, gate_area_option(1),  gate_size_option(0),
+                                              kPairCutoffOption, gate_area_option(0.8),  gate_size_option(0),
                                               kLeafMaxOption};
 
 constexpr std::uint32_t kNone = kNoCluster;
@@ -282,8 +282,7 @@ Result<tree::BinaryTree> build_over_pairs(refs::ReferenceSet&& set, const Option
     ids = std::move(driver.ids());
   }
   set.references = {};
-  tree::BinaryTree tree =
-      tree::canonicalize(nodes.span(), ids.span(), set.primitive_count, false, context.executor);
+  tree::BinaryTree tree = tree::canonicalize(nodes.span(), ids.span(), set.primitive_count, false, context.executor);
   tree.notes = {{"pairs of round 1", double(count - roots)},
                 {"roots after round 1", double(roots)},
                 {"rounds", 1},

@@ -54,7 +54,8 @@ BinSplit BinnedSahFinder::bin(const BuildRange& range, const BinGrid& grid) cons
 }
 
 /// The same in parallel; also leaves behind how many references of each chunk go left.
-BinSplit BinnedSahFinder::bin_in_chunks(const BuildRange& range, const BinGrid& grid, Executor& executor, RangeSplit& split) const {
+BinSplit BinnedSahFinder::bin_in_chunks(const BuildRange& range, const BinGrid& grid, Executor& executor,
+                                        RangeSplit& split) const {
   const refs::Reference* const references = ranges().references(range);
   std::vector<std::unique_ptr<Bins>> parts((range.size() + kChunk - 1) / kChunk);
   executor.for_chunks(range.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {

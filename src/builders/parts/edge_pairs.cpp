@@ -2,9 +2,10 @@
 // taken within chunks of a fixed number of references, which do not pair across their borders: chunks are independent.
 #include "builders/parts/edge_pairs.h"
 
-#include <array>
+#include <algorithm>
 #include <vector>
 
+#include "builders/parts/area_scale.h"
 #include "builders/parts/build_range.h"
 
 namespace boxwood::builders {
@@ -12,36 +13,32 @@ namespace {
 
 using refs::Reference;
 
-/// In double: areas of boxes of any float size neither overflow nor vanish.
-double half_area(const Box& box) {
-  const double x = double(box.upper.x) - box.lower.x, y = double(box.upper.y) - box.lower.y,
-               z = double(box.upper.z) - box.lower.z;
-  return x * y + y * z + z * x;
-}
-
 class Pairing {
  public:
   Pairing(const refs::ReferenceSet& set, mesh::Weld weld, double growth, Executor& executor)
       : references_(set.references.span()),
-        growth_(growth > 0 ? growth : double(kInfinity)),
+        growth_(growth > 0 ? float(growth) : kInfinity),
+        scale_(Float4::fill(area_scale(set.bounds)) & xyz_mask()),
         neighbours_(set.primitives->edge_neighbours(weld, executor)),
-        partner_(references_.size()),
-        parts_area_(references_.size()) {
+        items_(references_.size()) {
     name_references(set.primitive_count);
   }
 
+  bool numbered() const { return reference_of_.empty(); }
+
   /// Returns how many pairs and single references there are in the chunk.
   std::size_t run(std::uint32_t begin, std::uint32_t end) {
-    for (std::uint32_t i = begin; i < end; ++i) partner_[i] = kNoPartner;
+    for (std::uint32_t i = begin; i < end; ++i) items_[i].partner = kNoPartner;
     if (neighbours_.empty()) return end - begin;
+    measure(begin, end);
     std::size_t count = end - begin;
     for (std::uint32_t i = begin; i < end; ++i) {
-      if (partner_[i] != kNoPartner) continue;
-      const auto [best, growth] = best_neighbour(i, begin, end);
+      if (items_[i].partner != kNoPartner) continue;
+      const auto [best, parts_area] = best_neighbour(i, begin, end);
       if (best == kNoPartner) continue;
-      parts_area_[best] = growth > 0 ? float(1 / growth) : 2;
-      partner_[i] = best;
-      partner_[best] = i;
+      items_[i].area = items_[best].area = parts_area;
+      items_[i].partner = best;
+      items_[best].partner = i;
       --count;
     }
     return count;
@@ -50,16 +47,30 @@ class Pairing {
   /// Writes what `run` counted: pairs in the order of their first references.
   void write(std::uint32_t begin, std::uint32_t end, std::uint32_t next, EdgePairs& out) const {
     for (std::uint32_t i = begin; i < end; ++i) {
-      const std::uint32_t other = partner_[i];
+      const std::uint32_t other = items_[i].partner;
       if (other < i) continue;
-      const Reference& reference = references_[i];
-      const Box box = other == kNoPartner ? reference.box() : merge(reference.box(), references_[other].box());
-      out.set.references[next] = {box.lower, next, box.upper, 0};
-      out.pairs[next++] = {i, other, other == kNoPartner ? 1 : parts_area_[other]};
+      Reference& pair = out.set.references[next];
+      pair = references_[i];
+      pair.primitive = next;
+      pair.reserved = 0;
+      if (other != kNoPartner) {
+        const Box box = merge(pair.box(), references_[other].box());
+        pair = {box.lower, next, box.upper, std::bit_cast<std::uint32_t>(items_[i].area)};
+      }
+      out.pairs[next++] = {i, other};
     }
   }
 
  private:
+  struct Item {
+    std::uint32_t partner;
+    float area;  ///< half the area of its box, scaled; once paired, the parts_area of the pair
+  };
+  struct Neighbour {
+    std::uint32_t reference;
+    float parts_area;  ///< area of both, over that of the box around both
+  };
+
   /// Neighbours are primitives; where references are not numbered like them, the first reference of one stands for it.
   void name_references(std::size_t primitive_count) {
     bool same = references_.size() == primitive_count;
@@ -69,36 +80,56 @@ class Pairing {
     for (std::size_t i = references_.size(); i-- > 0;) reference_of_[references_[i].primitive] = std::uint32_t(i);
   }
 
-  struct Neighbour {
-    std::uint32_t reference;
-    double growth;
-  };
+  /// Lanes 0 to 2: half areas of three boxes, in scaled lengths. What stands in the boxes' fourth lanes is left out.
+  Float4 areas(const Box4& a, const Box4& b, const Box4& c) const {
+    const Float4 mask = xyz_mask();
+    const auto extent = [&](const Box4& box) { return (box.upper - (box.lower & mask)) * scale_; };
+    return half_areas(extent(a), extent(b), extent(c));
+  }
+
+  void measure(std::uint32_t begin, std::uint32_t end) {
+    const std::uint32_t last = end - 1;
+    const auto box = [&](std::uint32_t i) { return Box4::of(references_[std::min(i, last)]); };
+    for (std::uint32_t i = begin; i < end; i += 3) {
+      alignas(16) float three[4];
+      areas(box(i), box(i + 1), box(i + 2)).store(three);
+      for (std::uint32_t k = 0; k < 3 && i + k < end; ++k) items_[i + k].area = three[k];
+    }
+  }
 
   Neighbour best_neighbour(std::uint32_t i, std::uint32_t begin, std::uint32_t end) const {
-    const Box box = references_[i].box();
-    const double area = half_area(box);
-    std::uint32_t best = kNoPartner;
-    double best_growth = growth_;
+    const Box4 box = Box4::of(references_[i]);
+    Box4 joined[3] = {box, box, box};
+    std::uint32_t others[3];
+    int count = 0;
     for (const std::uint32_t primitive : neighbours_[references_[i].primitive]) {
       if (primitive == mesh::kNoNeighbour) continue;
       const std::uint32_t other = reference_of_.empty() ? primitive : reference_of_[primitive];
-      if (other < begin || other >= end || other == i || partner_[other] != kNoPartner) continue;
-      const Box& other_box = references_[other].box();
-      const double both = area + half_area(other_box);
-      const double growth = both > 0 ? half_area(merge(box, other_box)) / both : 0;
-      if (growth > best_growth || (growth == best_growth && other >= best)) continue;
-      best = other;
+      if (other < begin || other >= end || other == i || items_[other].partner != kNoPartner) continue;
+      joined[count].grow(Box4::of(references_[other]));
+      others[count++] = other;
+    }
+    if (count == 0) return {kNoPartner, 0};
+    alignas(16) float area[4];
+    areas(joined[0], joined[1], joined[2]).store(area);
+    Neighbour best{kNoPartner, 0};
+    float best_growth = growth_;
+    for (int k = 0; k < count; ++k) {
+      const float both = items_[i].area + items_[others[k]].area;
+      const float growth = both > 0 ? area[k] / both : 0;
+      if (growth > best_growth || (growth == best_growth && others[k] >= best.reference)) continue;
+      best = {others[k], growth > 0 ? 1 / growth : 2};
       best_growth = growth;
     }
-    return {best, best_growth};
+    return best;
   }
 
   std::span<const Reference> references_;
-  double growth_;
+  float growth_;
+  Float4 scale_;
   AlignedBuffer<mesh::EdgeNeighbours> neighbours_;
   std::vector<std::uint32_t> reference_of_;  ///< empty: each primitive is the reference of its number
-  AlignedBuffer<std::uint32_t> partner_;
-  AlignedBuffer<float> parts_area_;  ///< of the pair, at its second reference
+  AlignedBuffer<Item> items_;
 };
 
 }  // namespace
@@ -115,6 +146,7 @@ EdgePairs pair_references(const refs::ReferenceSet& set, mesh::Weld weld, double
   out.set.references = AlignedBuffer<Reference>(first.back());
   out.set.primitive_count = first.back();
   out.set.bounds = set.bounds;
+  out.numbered = pairing.numbered();
   out.pairs = AlignedBuffer<ReferencePair>(first.back());
   executor.for_chunks(count, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     pairing.write(std::uint32_t(begin), std::uint32_t(end), std::uint32_t(first[chunk]), out);

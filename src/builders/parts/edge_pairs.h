@@ -2,6 +2,7 @@
 // ebbvh), by least growth of the box instead of by largest edge.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 #include "boxwood/builders.h"
@@ -14,12 +15,15 @@ inline constexpr std::uint32_t kNoPartner = 0xffffffffu;
 /// Two references, or one.
 struct ReferencePair {
   std::uint32_t first, second;  ///< second = kNoPartner: one only
-  float parts_area;             ///< of both boxes, over the area of the box around both
 };
 
 struct EdgePairs {
-  refs::ReferenceSet set;  ///< box of each pair; `primitive` is the number of the pair
+  refs::ReferenceSet set;  ///< box of each pair; `primitive` is its number, `reserved` holds the bits of parts_area
   AlignedBuffer<ReferencePair> pairs;
+  bool numbered = false;  ///< each reference stands at the number of its primitive
+
+  /// The area of both references' boxes, over that of the box around both; 0: a single reference.
+  static float parts_area(const refs::Reference& pair) { return std::bit_cast<float>(pair.reserved); }
 };
 
 /// Two references become a pair when their primitives share an edge and the box around both has at most `growth` times

@@ -6,8 +6,10 @@
 // puts them, at 2 * mid and 2 * mid + 1; those of a pair that is taken apart stand behind all of these.
 #include "builders/parts/pair_finder.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <utility>
 
 namespace boxwood::builders {
 namespace {
@@ -21,18 +23,14 @@ BinnedSahFinder::Settings binned_settings(const EdgePairs& pairs, std::size_t re
   return settings;
 }
 
-std::uint32_t count_of(const ReferencePair& pair) {
-  return pair.second == kNoPartner ? 1 : 2;
-}
-
 }  // namespace
 
 PairFinder::PairFinder(ReferenceRanges& ranges, const BuildRange& root, const EdgePairs& pairs,
-                       std::span<const refs::Reference> references, const tree::CostModel& cost,
-                       std::uint32_t leaf_max)
+                       std::span<const refs::Reference> references, const tree::CostModel& cost, std::uint32_t leaf_max)
     : BinnedSahFinder(ranges, root, binned_settings(pairs, references.size(), cost, leaf_max)),
       pairs_(pairs.pairs.span()),
       references_(references),
+      numbered_(pairs.numbered),
       traversal_(cost.traversal),
       intersection_(cost.intersection),
       leaf_max_(leaf_max) {}
@@ -44,9 +42,16 @@ class PairFinder::FewPairs {
     const refs::Reference* const source = finder.ranges().references(range);
     const std::uint32_t count = range.size();
     all_ = (1u << count) - 1;
-    for (std::uint32_t i = 0; i < count; ++i) pairs_[i] = source[i].primitive;
-    measure(source, count);
-    price();
+    for (std::uint32_t i = 0; i < count; ++i) {
+      pairs_[i] = source[i].primitive;
+      __builtin_prefetch(&pair(i));
+      parts_area_[i] = EdgePairs::parts_area(source[i]);
+      count_[1u << i] = parts_area_[i] == 0 ? 1 : 2;
+    }
+    if (count == 1) find<1>(source);
+    if (count == 2) find<2>(source);
+    if (count == 3) find<3>(source);
+    if (count == kFew) find<kFew>(source);
   }
 
   void write(std::uint32_t slot, tree::Node* nodes, std::uint32_t* ids) const {
@@ -56,7 +61,7 @@ class PairFinder::FewPairs {
     while (true) {
       const std::uint32_t left = left_[place.set];
       if (left != 0) {
-        const std::uint32_t mid = place.first + std::uint32_t(std::popcount(left));
+        const std::uint32_t mid = place.first + kSizes[left];
         nodes[place.slot] = {box_[place.set].box(), 2 * mid, 0};
         waiting[size++] = {place.set ^ left, mid, 2 * mid + 1};
         place = {left, place.first, 2 * mid};
@@ -73,6 +78,7 @@ class PairFinder::FewPairs {
 
  private:
   static constexpr std::uint32_t kSets = 1u << kFew;
+  static constexpr std::uint8_t kSizes[kSets] = {0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
 
   /// A set whose tree is to be written: its first pair's place and its node's.
   struct Place {
@@ -81,52 +87,78 @@ class PairFinder::FewPairs {
 
   const ReferencePair& pair(std::uint32_t i) const { return finder_.pairs_[pairs_[i]]; }
 
-  void measure(const refs::Reference* source, std::uint32_t count) {
+  /// Boxes and areas of all sets of the first `kCount` pairs.
+  template <std::uint32_t kCount>
+  void measure(const refs::Reference* source) {
     const Float4 mask = xyz_mask(), scale = Float4::fill(finder_.scale());
-    for (std::uint32_t set = 1; set <= all_; ++set) {
-      const auto low = std::uint32_t(std::countr_zero(set));
-      const Box4 box = Box4::of(source[low]);
-      box_[set] = {box.lower & mask, box.upper};
-      if (const std::uint32_t rest = set & (set - 1); rest != 0) box_[set].grow(box_[rest]);
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+      const Box4 box = Box4::of(source[i]);
+      box_[1u << i] = {box.lower & mask, box.upper};
+      for (std::uint32_t rest = 1; rest < 1u << i; ++rest) {
+        box_[1u << i | rest] = box_[1u << i];
+        box_[1u << i | rest].grow(box_[rest]);
+      }
     }
-    for (std::uint32_t set = all_ + 1; set <= all_ + 2; ++set) box_[set] = box_[1];  // they are looked at by three
-    for (std::uint32_t set = 1; set <= all_; set += 3)
-      half_areas((box_[set].upper - box_[set].lower) * scale, (box_[set + 1].upper - box_[set + 1].lower) * scale,
-                 (box_[set + 2].upper - box_[set + 2].lower) * scale)
-          .store_anywhere(area_ + set);
-    for (std::uint32_t i = 0; i < count; ++i) count_[1u << i] = count_of(pair(i));
+    constexpr std::uint32_t kAll = (1u << kCount) - 1;
+    const auto extent = [&](std::uint32_t set) {
+      const Box4& box = box_[std::min(set, kAll)];
+      return (box.upper - box.lower) * scale;
+    };
+    for (std::uint32_t set = 1; set <= kAll; set += 3)
+      half_areas(extent(set), extent(set + 1), extent(set + 2)).store_anywhere(area_ + set);
   }
 
-  void price() {
-    const double traversal = finder_.traversal_, intersection = finder_.intersection_;
-    const std::uint32_t leaf_max = finder_.leaf_max_;
-    for (std::uint32_t set = 1; set <= all_; ++set) {
-      const std::uint32_t rest = set & (set - 1), low = set ^ rest;
-      double open;  // the price of what is below a node over the set
-      std::uint32_t best_left = 0;
-      if (rest == 0) {
-        const ReferencePair& alone = pair(std::uint32_t(std::countr_zero(low)));
-        open = alone.second == kNoPartner ? double(kInfinity) : intersection * (double(alone.parts_area) * area_[set]);
-      } else {
-        count_[set] = count_[rest] + count_[low];
-        open = cost_[rest] + cost_[low];
-        best_left = low;
-        for (std::uint32_t right = (rest - 1) & rest; right != 0; right = (right - 1) & rest)
-          if (const double cost = cost_[right] + cost_[set ^ right]; cost < open) open = cost, best_left = set ^ right;
+  /// A price and what it is for, in an integer that is ordered by price. Prices are not negative.
+  static std::uint64_t priced(float cost, std::uint32_t left) {
+    return std::uint64_t(std::bit_cast<std::uint32_t>(cost)) << 32 | left;
+  }
+
+  /// The cheapest tree over a set whose parts have theirs. Without branches: nothing here can be foretold.
+  template <std::uint32_t kSet>
+  void price_set(float traversal, float intersection, std::uint32_t leaf_max) {
+    constexpr std::uint32_t kRest = kSet & (kSet - 1), kLow = kSet ^ kRest;
+    float open = 0;  // the price of what is below a node over the set
+    std::uint32_t best_left = 0;
+    if constexpr (kRest == 0) {
+      open = intersection * (parts_area_[std::countr_zero(kSet)] * area_[kSet]);
+    } else {
+      count_[kSet] = count_[kRest] + count_[kLow];
+      std::uint64_t best = priced(cost_[kLow] + cost_[kRest], kLow);
+      const auto try_right = [&]<std::uint32_t kRight>() {
+        if constexpr (kRight != 0 && kRight != kRest && (kRight & ~kRest) == 0)
+          best = std::min(best, priced(cost_[kSet ^ kRight] + cost_[kRight], kSet ^ kRight));
+      };
+      [&]<std::uint32_t... kRights>(std::integer_sequence<std::uint32_t, kRights...>) {
+        (try_right.template operator()<kRights>(), ...);
       }
-      const double inner = traversal * area_[set] + open, leaf = intersection * count_[set] * area_[set];
-      is_leaf_[set] = count_[set] == 1 || ((leaf_max == 0 || count_[set] <= leaf_max) && leaf <= inner);
-      cost_[set] = is_leaf_[set] ? leaf : inner;
-      left_[set] = is_leaf_[set] ? 0 : best_left;
+      (std::make_integer_sequence<std::uint32_t, kRest>());
+      open = std::bit_cast<float>(std::uint32_t(best >> 32));
+      best_left = std::uint32_t(best);
     }
+    const float inner = traversal * area_[kSet] + open, leaf = intersection * float(count_[kSet]) * area_[kSet];
+    const bool is_leaf = (count_[kSet] == 1) | ((count_[kSet] <= leaf_max) & (leaf <= inner));
+    is_leaf_[kSet] = is_leaf;
+    cost_[kSet] = is_leaf ? leaf : inner;
+    left_[kSet] = is_leaf ? 0 : best_left;
+  }
+
+  template <std::uint32_t kCount>
+  void find(const refs::Reference* source) {
+    measure<kCount>(source);
+    const float traversal = finder_.traversal_, intersection = finder_.intersection_;
+    const std::uint32_t leaf_max = finder_.leaf_max_ == 0 ? 2 * kFew : finder_.leaf_max_;
+    [&]<std::uint32_t... kSets>(std::integer_sequence<std::uint32_t, kSets...>) {
+      (price_set<kSets + 1>(traversal, intersection, leaf_max), ...);
+    }
+    (std::make_integer_sequence<std::uint32_t, (1u << kCount) - 1>());
   }
 
   void write_leaf(const Place& place, tree::Node* nodes, std::uint32_t* ids) const {
     std::uint32_t* next = ids + 2 * place.first;
     for (std::uint32_t rest = place.set; rest != 0; rest &= rest - 1) {
       const ReferencePair& one = pair(std::uint32_t(std::countr_zero(rest)));
-      *next++ = finder_.references_[one.first].primitive;
-      if (one.second != kNoPartner) *next++ = finder_.references_[one.second].primitive;
+      *next++ = finder_.primitive(one.first);
+      if (one.second != kNoPartner) *next++ = finder_.primitive(one.second);
     }
     nodes[place.slot] = {box_[place.set].box(), 2 * place.first, count_[place.set]};
   }
@@ -146,10 +178,11 @@ class PairFinder::FewPairs {
   const PairFinder& finder_;
   std::uint32_t first_, all_;
   std::uint32_t pairs_[kFew];
+  float parts_area_[kFew];
   // By set. Areas are half and in the finder's scale.
-  Box4 box_[kSets + 2];
+  Box4 box_[kSets];
   float area_[kSets + 4];
-  double cost_[kSets];
+  float cost_[kSets];
   std::uint32_t count_[kSets];
   std::uint32_t left_[kSets];  ///< the part that the best tree has on the left; 0: there are no parts
   bool is_leaf_[kSets];
@@ -161,8 +194,8 @@ void PairFinder::finish(const BuildRange& range, tree::Node* nodes, std::uint32_
   std::uint32_t* next = ids + 2 * range.first;
   for (std::uint32_t i = 0; i < range.size(); ++i) {
     const ReferencePair& pair = pairs_[source[i].primitive];
-    *next++ = references_[pair.first].primitive;
-    if (pair.second != kNoPartner) *next++ = references_[pair.second].primitive;
+    *next++ = primitive(pair.first);
+    if (pair.second != kNoPartner) *next++ = primitive(pair.second);
   }
   nodes[range.slot] = {range.bounds.box(), 2 * range.first, std::uint32_t(next - (ids + 2 * range.first))};
 }

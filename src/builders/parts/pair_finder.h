@@ -24,9 +24,15 @@ class PairFinder : public BinnedSahFinder {
 
   class FewPairs;
 
+  /// References lie far apart by now, and mostly one need not look at them.
+  std::uint32_t primitive(std::uint32_t reference) const {
+    return numbered_ ? reference : references_[reference].primitive;
+  }
+
   std::span<const ReferencePair> pairs_;
   std::span<const refs::Reference> references_;
-  double traversal_, intersection_;
+  bool numbered_;
+  float traversal_, intersection_;
   std::uint32_t leaf_max_;
 };
 

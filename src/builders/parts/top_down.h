@@ -32,7 +32,9 @@ namespace boxwood::builders {
 inline constexpr std::uint32_t kDepthLimit = 96;
 
 template <class Finder>
-concept MakesSubtrees = requires(Finder finder, const BuildRange& range) { finder.finishes(range); };
+concept MakesSubtrees = requires(Finder finder, const BuildRange& range) {
+  finder.finishes(range);
+};
 
 template <class Finder>
 class TopDownDriver {
