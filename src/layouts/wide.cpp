@@ -125,7 +125,7 @@ void fill(Layout& layout, const tree::WideTree& tree, std::span<const tree::Wide
 /// The child words, with leaves one behind the other, and the number of blocks.
 template <class Blocks>
 std::pair<AlignedBuffer<std::uint32_t>, std::size_t> place_leaves(const tree::WideTree& tree, const Children& children,
-                                                                const MeshView& mesh, Executor& executor) {
+                                                                  const MeshView& mesh, Executor& executor) {
   AlignedBuffer<std::uint32_t> words(children.size());
   executor.for_chunks(words.size(), 4096, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c)
