@@ -276,7 +276,7 @@ Result<tree::BinaryTree> build_over_pairs(refs::ReferenceSet&& set, const Option
     ReferenceRanges ranges(std::move(pairs.set));
     const BuildRange root = ranges.root(context.executor);
     PairFinder finder(ranges, root, pairs, set.references.span(), options.cost(), options.integer(kLeafMax));
-    TopDownDriver<PairFinder> driver(finder, roots, context, kLargeRange, 2);
+    TopDownDriver<PairFinder> driver(finder, roots, context, kLargeRange, 2 * count, 2 * roots);
     if (!driver.run(root)) return cancelled_error();
     nodes = std::move(driver.nodes());
     ids = std::move(driver.ids());

@@ -46,6 +46,7 @@ class Pairing {
 
   /// Writes what `run` counted: pairs in the order of their first references.
   void write(std::uint32_t begin, std::uint32_t end, std::uint32_t next, EdgePairs& out) const {
+    std::uint32_t rank = begin - next;  // each pair of two has made the numbers fall back by one
     for (std::uint32_t i = begin; i < end; ++i) {
       const std::uint32_t other = items_[i].partner;
       if (other < i) continue;
@@ -57,7 +58,8 @@ class Pairing {
         const Box box = merge(pair.box(), references_[other].box());
         pair = {box.lower, next, box.upper, std::bit_cast<std::uint32_t>(items_[i].area)};
       }
-      out.pairs[next++] = {i, other};
+      out.pairs[next++] = {i, other, rank};
+      rank += other != kNoPartner;
     }
   }
 

@@ -15,6 +15,7 @@ inline constexpr std::uint32_t kNoPartner = 0xffffffffu;
 /// Two references, or one.
 struct ReferencePair {
   std::uint32_t first, second;  ///< second = kNoPartner: one only
+  std::uint32_t rank;           ///< how many pairs before this one have two
 };
 
 struct EdgePairs {

@@ -3,7 +3,8 @@
 // they can have: at most 25 splits are priced for four pairs, which takes less time than binning them once.
 //
 // Places: pair i of the final order has ids 2 * i and 2 * i + 1. The split at `mid` puts its children where the driver
-// puts them, at 2 * mid and 2 * mid + 1; those of a pair that is taken apart stand behind all of these.
+// puts them, at 2 * mid and 2 * mid + 1; those of a pair that is taken apart stand behind all of these, by the pair's
+// rank.
 #include "builders/parts/pair_finder.h"
 
 #include <algorithm>
@@ -166,7 +167,7 @@ class PairFinder::FewPairs {
   /// A pair of which each reference is a leaf.
   void write_parts(const Place& place, tree::Node* nodes, std::uint32_t* ids) const {
     const ReferencePair& one = pair(std::uint32_t(std::countr_zero(place.set)));
-    const auto children = std::uint32_t(2 * (finder_.pairs_.size() + place.first));
+    const auto children = std::uint32_t(2 * (finder_.pairs_.size() + one.rank));
     nodes[place.slot] = {box_[place.set].box(), children, 0};
     for (const std::uint32_t part : {0u, 1u}) {
       const refs::Reference& reference = finder_.references_[part == 0 ? one.first : one.second];

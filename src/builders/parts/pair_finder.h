@@ -10,7 +10,8 @@ namespace boxwood::builders {
 
 class PairFinder : public BinnedSahFinder {
  public:
-  /// `ranges` are over the pairs of `pairs`; a driver with three places for each of them is to be used.
+  /// `ranges` are over the pairs of `pairs`; a driver with two nodes for each reference and two ids for
+  /// each pair is to be used.
   PairFinder(ReferenceRanges& ranges, const BuildRange& root, const EdgePairs& pairs,
              std::span<const refs::Reference> references, const tree::CostModel& cost, std::uint32_t leaf_max);
 

@@ -39,16 +39,19 @@ concept MakesSubtrees = requires(Finder finder, const BuildRange& range) {
 template <class Finder>
 class TopDownDriver {
  public:
-  /// Ranges of more references than `large_range` are worked on by all threads. Nodes and ids are two and one for each
-  /// reference, `room` times.
+  /// Ranges of more references than `large_range` are worked on by all threads.
   TopDownDriver(Finder& finder, std::size_t reference_count, const BuildContext& context,
-                std::size_t large_range = kLargeRange, std::size_t room = 1)
+                std::size_t large_range = kLargeRange)
+      : TopDownDriver(finder, reference_count, context, large_range, 2 * reference_count, reference_count) {}
+  /// For a finder that makes subtrees and needs more room than two nodes and one id for each reference.
+  TopDownDriver(Finder& finder, std::size_t reference_count, const BuildContext& context, std::size_t large_range,
+                std::size_t nodes, std::size_t ids)
       : finder_(finder),
         executor_(context.executor),
         monitor_(context, reference_count),
         large_range_(large_range),
-        nodes_(2 * room * reference_count),
-        ids_(room * reference_count) {}
+        nodes_(nodes),
+        ids_(ids) {}
 
   /// Fills nodes() and ids(). False when cancelled.
   bool run(const BuildRange& root) {

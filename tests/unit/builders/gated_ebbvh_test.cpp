@@ -98,7 +98,7 @@ TEST(GatedEbbvh, NumbersOfTrianglesSurviveUnusableOnes) {
 
 TEST(GatedEbbvh, SameBitsForEveryNumberOfThreads) {
   const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 8);
-  const TriangleMesh mesh = wave(300, 150);  // more triangles than a chunk, and than one thread is given to bin
+  const TriangleMesh mesh = wave(140, 140);  // several chunks of triangles
   SequentialExecutor sequential;
   const std::uint64_t hash = tree::hash(build_gated(mesh, sequential));
   for (const int threads : {2, 8}) {
