@@ -2,10 +2,18 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstddef>
+#include <vector>
 
 #include "math/rounding.h"
 
 namespace boxwood {
+namespace {
+
+/// Four floats that are worked on together (a vector of g++ and clang++).
+using Lanes = float __attribute__((vector_size(16)));
+
+}  // namespace
 
 ConvexPolygon::ConvexPolygon(const Triangle& triangle) {
   const Vec3* const vertices[] = {&triangle.v0, &triangle.v1, &triangle.v2};
@@ -54,34 +62,49 @@ void ConvexPolygon::clip(const Box& box) {
 }
 
 void ConvexPolygon::chop(int axis, std::span<const float> positions, std::span<Box> parts) const {
+  // In single precision; the fourth lane is not used.
+  struct Part {
+    Lanes lower, upper;
+    void clear() { lower = Lanes{} + kInfinity, upper = Lanes{} - kInfinity; }
+    void grow(Lanes p) {
+      lower = lower < p ? lower : p;
+      upper = upper > p ? upper : p;
+    }
+  };
+  constexpr std::size_t kFew = 33;
+  alignas(16) std::array<std::byte, kFew * sizeof(Part)> few;  // not initialised: that would cost more than the rest
+  std::vector<Part> many(parts.size() > kFew ? parts.size() : 0);
+  Part* const boxes = many.empty() ? reinterpret_cast<Part*>(few.data()) : many.data();
+  for (std::size_t i = 0; i < parts.size(); ++i) boxes[i].clear();
   const auto a = static_cast<std::size_t>(axis);
-  for (Box& part : parts) part = {};
-  const auto grow = [&](std::size_t part, const Point& p) {
-    parts[part].grow(Vec3{static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
-  };
-  const auto slab = [&](double x) {
-    return static_cast<std::size_t>(std::upper_bound(positions.begin(), positions.end(), x) - positions.begin());
-  };
-  for (int i = 0; i < size_; ++i) {
-    const Point& from = corners_[static_cast<std::size_t>(i)];
-    const Point& to = corners_[static_cast<std::size_t>(i + 1 == size_ ? 0 : i + 1)];
-    const bool rises = from[a] < to[a];
-    const Point &low = rises ? from : to, &high = rises ? to : from;
-    std::size_t part = slab(low[a]);
-    grow(part, low);
-    if (part == positions.size() || !(positions[part] < high[a])) {
-      grow(part, high);
-      continue;
+  std::array<Lanes, kMostCorners> corners;
+  std::array<std::size_t, kMostCorners> first;  // part of each corner
+  for (std::size_t i = 0; i < static_cast<std::size_t>(size_); ++i) {
+    const Point& p = corners_[i];
+    corners[i] = Lanes{static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]), 0};
+    const float at = corners[i][a];
+    first[i] = 0;
+    while (first[i] < positions.size() && positions[first[i]] <= at) ++first[i];
+    boxes[first[i]].grow(corners[i]);
+  }
+  for (std::size_t i = 0, last = static_cast<std::size_t>(size_) - 1; i < static_cast<std::size_t>(size_); last = i++) {
+    const bool rises = corners[last][a] < corners[i][a];
+    const std::size_t from = rises ? last : i, to = rises ? i : last;
+    if (first[from] == first[to]) continue;
+    const Lanes low = corners[from];
+    const float begin = low[a];
+    const Lanes slope = (corners[to] - low) * (1 / (corners[to][a] - begin));
+    for (std::size_t part = first[from]; part < first[to]; ++part) {
+      const Lanes crossing = low + (positions[part] - begin) * slope;
+      boxes[part].grow(crossing), boxes[part + 1].grow(crossing);
     }
-    const double share_per_length = 1 / (high[a] - low[a]);
-    for (; part < positions.size() && positions[part] < high[a]; ++part) {
-      const double share = (positions[part] - low[a]) * share_per_length;
-      Point crossing;
-      for (std::size_t k = 0; k < 3; ++k) crossing[k] = low[k] + share * (high[k] - low[k]);
-      crossing[a] = positions[part];
-      grow(part, crossing), grow(part + 1, crossing);
-    }
-    grow(part, high);
+  }
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const Lanes l = boxes[i].lower, u = boxes[i].upper;
+    parts[i] = {{l[0], l[1], l[2]}, {u[0], u[1], u[2]}};
+    // What rounding may have moved past the planes.
+    if (i > 0) parts[i].lower[axis] = maximum(parts[i].lower[axis], positions[i - 1]);
+    if (i < positions.size()) parts[i].upper[axis] = minimum(parts[i].upper[axis], positions[i]);
   }
 }
 

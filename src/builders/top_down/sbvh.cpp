@@ -4,10 +4,11 @@
 // root's area, between bins into which references are chopped. A reference that the plane cuts goes to one side whole
 // where this is cheaper (reference unsplitting).
 //
-// Ours differs: whether to unsplit is decided for each reference against the sides as the bins give them, not as they
-// have become by earlier decisions, so that it does not depend on any order; the references of the tree are limited
-// (`growth`), each range has a share by its area times its references. O(n log n) while references pass few bins;
-// parallel over ranges and chunks; the same bits for every number of threads.
+// Ours differs: the overlap must also be a part of the node's own area (`overlap`), since below that planes cost a
+// build more than they gain; whether to unsplit is decided for each reference against the sides as the bins give them,
+// not as they have become by earlier decisions, so that it does not depend on any order; the references of the tree are
+// limited (`growth`), each range has a share by its area times its references. O(n log n) while references pass few
+// bins; parallel over ranges and chunks; the same bits for every number of threads.
 #include <algorithm>
 #include <memory>
 
@@ -68,6 +69,7 @@ class SbvhFinder {
         leaf_rule_(options.cost(), options.integer(kLeafMax)),
         area_scale_(area_scale(bounds)),
         least_overlap_(options.number("alpha") * scaled_half_area(bounds, area_scale_)),
+        least_own_overlap_(options.number("overlap")),
         object_bins_(static_cast<int>(options.integer("bins"))),
         spatial_bins_(static_cast<int>(options.integer("spatial.bins"))) {}
 
@@ -82,7 +84,7 @@ class SbvhFinder {
     split.objects = best_object_split(range.references, object_bins_, area_scale_, executor);
     split.kind = split.objects.exists() ? SbvhSplit::Kind::objects : SbvhSplit::Kind::halves;
     double cost = split.objects.bins.cost;
-    if (range.spare > 0 && overlaps(split.objects)) {
+    if (range.spare > 0 && overlaps(split.objects, area)) {
       split.spatial = fill_bins(range, executor).best_split(range.size(), range.spare, area_scale_);
       const double spatial_cost = split.spatial.plane.cost;
       if (spatial_cost < cost && spatial_cost < area * count) {
@@ -111,10 +113,11 @@ class SbvhFinder {
 
  private:
   /// Do the sides of the object split overlap by enough? Without one, references coincide: they do.
-  bool overlaps(const ObjectSplit& split) const {
+  bool overlaps(const ObjectSplit& split, double area) const {
     if (!split.exists()) return true;
     const Box both = intersection(split.bins.left.box(), split.bins.right.box());
-    return !both.is_empty() && scaled_half_area(both, area_scale_) >= least_overlap_;
+    return !both.is_empty() &&
+           scaled_half_area(both, area_scale_) >= std::max(least_overlap_, least_own_overlap_ * area);
   }
 
   SpatialBins fill_bins(const SplittingRange& range, Executor& executor) const {
@@ -137,7 +140,7 @@ class SbvhFinder {
   const refs::Primitives& primitives_;
   LeafRule leaf_rule_;
   float area_scale_;
-  double least_overlap_;
+  double least_overlap_, least_own_overlap_;
   int object_bins_, spatial_bins_;
 };
 
@@ -150,13 +153,18 @@ constexpr OptionSpec kOptions[] = {
      .integer = true},
     {.key = "spatial.bins",
      .description = "bins of space per axis for spatial splits (stich2009)",
-     .default_value = 32,
+     .default_value = 16,
      .lowest = 2,
      .highest = kMostSpatialBins,
      .integer = true},
     {.key = "alpha",
      .description = "overlap of the sides, by the root's area, from which on spatial splits are tried (stich2009)",
      .default_value = 1e-5,
+     .lowest = 0,
+     .highest = 1},
+    {.key = "overlap",
+     .description = "overlap of the sides, by the node's own area, from which on spatial splits are tried",
+     .default_value = 0.1,
      .lowest = 0,
      .highest = 1},
     growth_option(2),

@@ -99,6 +99,33 @@ TEST(Presplit, NoneLeavesEverythingAsItIs) {
   EXPECT_EQ(none.report.area_reduction(), 1);
 }
 
+TEST(Presplit, PriorityKeepsItsBudgetAndCutsTheLoosestOnly) {
+  // Many small triangles and one that lies across them all.
+  TriangleMesh mesh = test::soup(400, 7);
+  const auto large = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const Vec3 v : {Vec3{-50, -40, -45}, Vec3{60, 55, 50}, Vec3{60, 55, 51}}) mesh.vertices.push_back(v);
+  mesh.triangles.push_back({large, large + 1, large + 2});
+  for (const double budget : {1.0, 1.05, 1.2}) {
+    const Split made = split(mesh, "priority:loose=20,budget=" + std::to_string(budget));
+    EXPECT_LE(made.set.references.size(), static_cast<std::size_t>(budget * 401));
+    for (const Reference& reference : made.set.references)
+      if (reference.primitive != 400) EXPECT_EQ(reference.box(), mesh.view().triangle(reference.primitive).bounds());
+    EXPECT_EQ(made.report.splits > 0, budget > 1);
+    EXPECT_EQ(made.report.area_reduction() < 0.8, budget > 1) << made.report.area_reduction();
+  }
+}
+
+TEST(Presplit, PriorityLeavesTrianglesThatAreAlikeAlone) {
+  TriangleMesh mesh;
+  for (std::uint32_t i = 0; i < 500; ++i) {
+    const float x = static_cast<float>(i);
+    for (const Vec3 v : {Vec3{x, x, x}, Vec3{x + 1, x, x + 1}, Vec3{x, x + 1, x + 1}}) mesh.vertices.push_back(v);
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  EXPECT_EQ(split(mesh, "priority:budget=4").set.references.size(), 500u);
+  EXPECT_GT(split(mesh, "priority:budget=4,loose=0.5").set.references.size(), 900u);
+}
+
 /// The heuristic written down again, recursively.
 struct Oracle {
   double threshold;
