@@ -28,8 +28,9 @@ namespace boxwood::queries::HWY_NAMESPACE {
 
 using EightTag = hn::CappedTag<float, 8>;
 /// The sorting network is one of eight lanes.
-inline constexpr bool kHasEightLanes = hn::MaxLanes(EightTag()) == 8;
+inline constexpr bool kHasEightLanes = HWY_MAX_BYTES >= 32;
 
+#if HWY_MAX_BYTES >= 32
 /// Sorts eight keys, largest first: a bitonic network of six layers.
 template <class VI>
 HWY_INLINE VI sort_descending(VI v) {
@@ -67,7 +68,9 @@ class Interleaved {
         depth_((layout.max_stack + 2 * 8 + 15) / 16 * 16),
         memory_(std::make_unique_for_overwrite<std::uint32_t[]>(2 * depth_ * kFlights)) {}
 
-  void run() {
+  /// Gives the number of entries popped.
+  std::size_t run() {
+    std::size_t steps = 0;
     std::uint32_t active[kFlights], active_count = 0;
     for (std::uint32_t slot = 0; slot < kFlights; ++slot) {
       words_[slot] = memory_.get() + 2 * slot * depth_;
@@ -77,6 +80,7 @@ class Interleaved {
     }
     std::uint32_t nodes[kFlights], leaves[kFlights], finished[kFlights];
     while (active_count) {
+      steps += active_count;
       std::uint32_t node_count = 0, leaf_count = 0, finished_count = 0;
       for (std::uint32_t i = 0; i < active_count; ++i) {
         const std::uint32_t slot = active[i];
@@ -106,6 +110,7 @@ class Interleaved {
         active[active_count] = slot, active_count += top_[slot] != 0;
       }
     }
+    return steps;
   }
 
  private:
@@ -225,20 +230,24 @@ class Interleaved {
   Flight flights_[kFlights];
 };
 
+#endif  // eight lanes
+
 template <int W, class Leaf, bool kRobust>
-void interleaved_closest(const Layout& layout, const Ray* rays, std::size_t count, Hit* hits, Vec3* normals) {
-  if constexpr (W == 8 && kHasEightLanes)
-    Interleaved<Leaf, kRobust, false>(layout, rays, count, hits, normals, nullptr).run();
-  else
-    closest<W, Leaf, kRobust, false>(layout, rays, count, hits, normals, nullptr);
+std::size_t interleaved_closest(const Layout& layout, const Ray* rays, std::size_t count, Hit* hits, Vec3* normals) {
+#if HWY_MAX_BYTES >= 32
+  if constexpr (W == 8) return Interleaved<Leaf, kRobust, false>(layout, rays, count, hits, normals, nullptr).run();
+#endif
+  closest<W, Leaf, kRobust, false>(layout, rays, count, hits, normals, nullptr);
+  return 0;
 }
 
 template <int W, class Leaf, bool kRobust>
-void interleaved_any(const Layout& layout, const Ray* rays, std::size_t count, std::uint8_t* occluded) {
-  if constexpr (W == 8 && kHasEightLanes)
-    Interleaved<Leaf, kRobust, true>(layout, rays, count, nullptr, nullptr, occluded).run();
-  else
-    any<W, Leaf, kRobust, false>(layout, rays, count, occluded, nullptr);
+std::size_t interleaved_any(const Layout& layout, const Ray* rays, std::size_t count, std::uint8_t* occluded) {
+#if HWY_MAX_BYTES >= 32
+  if constexpr (W == 8) return Interleaved<Leaf, kRobust, true>(layout, rays, count, nullptr, nullptr, occluded).run();
+#endif
+  any<W, Leaf, kRobust, false>(layout, rays, count, occluded, nullptr);
+  return 0;
 }
 
 }  // namespace boxwood::queries::HWY_NAMESPACE

@@ -393,6 +393,8 @@ HWY_INLINE void answer(const Layout& layout, const PacketRays& rays, float signa
 template <int W, class Leaf, bool kRobust, bool kAny>
 bool trace_packet(const Layout& layout, const Ray* rays, const Tile& tile, PacketAnswers answers) {
   constexpr int kPasses = 2;
+  // Without vectors a packet gains nothing.
+  if constexpr (hn::MaxLanes(RayTag()) < 4) return false;
   PacketRays packet;
   packet.load(rays, tile);
   packet.prepare();
