@@ -17,6 +17,8 @@ constexpr std::size_t kPiece = 512;
 constexpr std::size_t kFewSteps = 8;
 /// Pieces that go one by one until rays in flight are tried again.
 constexpr std::size_t kRetry = 16;
+/// Tiles passed over, at most, until a packet is tried again where packets have given up.
+constexpr std::size_t kMostSkipped = 32;
 
 bool is_sound(const Ray& ray) {
   const Vec3 d = ray.direction;
@@ -36,6 +38,13 @@ float largest_component(const Vec3& v) {
 /// How different two rays are: of their directions, the largest being 1, and of their origins in units of `size`.
 float difference(const Ray& a, const Ray& b, float size) {
   return largest_component(scaled_direction(a) - scaled_direction(b)) + largest_component(a.origin - b.origin) / size;
+}
+
+/// The k-th of places spread evenly over [0, range) that are no multiples of anything: places at equal distances could
+/// all be ends of rows.
+std::size_t spread(std::size_t k, std::size_t range) {
+  const double x = 0.5 + 0.6180339887498949 * static_cast<double>(k);
+  return static_cast<std::size_t>((x - std::floor(x)) * static_cast<double>(range));
 }
 
 float size_of(const Box& bounds) {
@@ -67,7 +76,7 @@ float mean_difference(std::span<const Ray> rays, std::size_t distance, float siz
   float sum = 0;
   std::size_t count = 0;
   for (std::size_t k = 0; k < kSamples; ++k) {
-    const std::size_t i = (2 * k + 1) * range / (2 * kSamples);
+    const std::size_t i = spread(k, range);
     const Ray &a = rays[i], &b = rays[i + distance];
     if (!is_sound(a) || !is_sound(b)) continue;
     sum += minimum(kCap, difference(a, b, size));
@@ -137,18 +146,25 @@ class ChunkTracer {
   }
 
  private:
-  bool packet(const Tile& tile) const {
+  /// Where packets give up they are tried ever more rarely, until one gets through.
+  bool packet(const Tile& tile, bool always) {
+    if (!always) {
+      if (to_skip_ > 0) return --to_skip_, false;
+      if (!looks_coherent(rays_.data(), tile, size_)) return false;
+    }
     const BatchAnswers& a = answers_;
-    return a.any() ? methods_.batch.packet_any(layout_, rays_.data(), tile, a.occluded)
-                   : methods_.batch.packet_closest(layout_, rays_.data(), tile, a.hits, a.normals);
+    const bool done = a.any() ? methods_.batch.packet_any(layout_, rays_.data(), tile, a.occluded)
+                              : methods_.batch.packet_closest(layout_, rays_.data(), tile, a.hits, a.normals);
+    skipping_ = done ? 0 : std::min(kMostSkipped, 2 * skipping_ + 1);
+    to_skip_ = skipping_;
+    return done;
   }
 
   void strips(bool always) {
     std::size_t begin = 0;  // of the rays that wait for what is behind them to be coherent again
     for (std::size_t at = 0; at < rays_.size(); at += kPacketRays) {
       const Tile strip{at, 0, static_cast<std::uint32_t>(std::min(kPacketRays, rays_.size() - at)), 1};
-      if (!always && !looks_coherent(rays_.data(), strip, size_)) continue;
-      if (!packet(strip)) continue;
+      if (!packet(strip, always)) continue;
       strip_of_others(begin, at, always);
       begin = at + strip.columns;
     }
@@ -163,7 +179,7 @@ class ChunkTracer {
   }
 
   void tile(const Tile& tile, bool always) {
-    if ((always || looks_coherent(rays_.data(), tile, size_)) && packet(tile)) return;
+    if (packet(tile, always)) return;
     for (std::uint32_t row = 0; row < tile.rows; ++row) {
       const std::size_t begin = tile.first + row * tile.stride;
       if (always) {
@@ -210,7 +226,7 @@ class ChunkTracer {
   std::span<const Ray> rays_;
   const BatchAnswers& answers_;
   float size_;
-  std::size_t singles_left_ = 0;
+  std::size_t singles_left_ = 0, skipping_ = 0, to_skip_ = 0;
   std::size_t rest_count_ = 0;
   Ray rest_[kPiece];
   std::size_t rest_places_[kPiece];
@@ -255,7 +271,7 @@ BatchCut cut_batch(const BatchMethods& methods, std::span<const Ray> rays, Trave
   std::size_t coherent = 0;
   constexpr std::size_t kSamples = 16;
   for (std::size_t k = 0; k < kSamples && rays.size() >= 8192; ++k) {
-    const std::size_t first = k * (rays.size() - 8) / kSamples;
+    const std::size_t first = spread(k, rays.size() - 8);
     coherent += looks_coherent(rays.data(), {first, 0, 8, 1}, size);
   }
   const std::size_t row = 2 * coherent >= kSamples ? find_row(rays, size) : 0;

@@ -20,6 +20,8 @@
 
 #include <hwy/cache_control.h>
 
+#include <array>
+
 #include "queries/kernels/batch.h"
 #include "queries/kernels/wide-inl.h"
 
@@ -31,6 +33,15 @@ using EightTag = hn::CappedTag<float, 8>;
 inline constexpr bool kHasEightLanes = HWY_MAX_BYTES >= 32;
 
 #if HWY_MAX_BYTES >= 32
+/// For each set of lanes its members, the last one first.
+inline constexpr auto kBackwards = [] {
+  std::array<std::array<std::uint8_t, 8>, 256> table{};
+  for (unsigned bits = 0; bits < 256; ++bits)
+    for (unsigned lane = 8, place = 0; lane-- > 0;)
+      if (bits >> lane & 1) table[bits][place++] = static_cast<std::uint8_t>(lane);
+  return table;
+}();
+
 /// Sorts eight keys, largest first: a bitonic network of six layers.
 template <class VI>
 HWY_INLINE VI sort_descending(VI v) {
@@ -188,8 +199,11 @@ class Interleaved {
     const auto children = hn::Load(du, node.child);
     std::uint32_t* const words = words_[slot] + top_[slot];
     if constexpr (kAny) {
-      const auto backwards = hn::RebindMask(du, hn::MaskFromVec(hn::Reverse(d, hn::VecFromMask(d, hit))));
-      hn::StoreU(hn::Compress(hn::Reverse(du, children), backwards), du, words);
+      const std::uint64_t bits = mask_bits(d, hit);
+      const hn::Rebind<std::uint8_t, decltype(du)> bytes;
+      const auto lanes = hn::PromoteTo(du, hn::Load(bytes, kBackwards[bits].data()));
+      hn::StoreU(hn::TableLookupLanes(children, hn::IndicesFromVec(du, lanes)), du, words);
+      top_[slot] += static_cast<std::uint32_t>(std::popcount(bits));
     } else {
       const auto lanes = hn::Iota(di, 0), low_bits = hn::Set(di, 7);
       const auto keys = hn::Or(hn::AndNot(low_bits, hn::BitCast(di, near)), lanes);
@@ -197,8 +211,8 @@ class Interleaved {
       hn::StoreU(hn::TableLookupLanes(children, hn::IndicesFromVec(du, hn::BitCast(du, hn::And(sorted, low_bits)))), du,
                  words);
       hn::StoreU(hn::BitCast(d, hn::AndNot(low_bits, sorted)), d, distances_[slot] + top_[slot]);
+      top_[slot] += static_cast<std::uint32_t>(hn::CountTrue(d, hit));
     }
-    top_[slot] += static_cast<std::uint32_t>(hn::CountTrue(d, hit));
   }
 
   HWY_INLINE void visit_leaf(std::uint32_t slot) {

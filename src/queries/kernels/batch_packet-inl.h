@@ -29,7 +29,8 @@ class PacketTraversal {
         blocks_(reinterpret_cast<const Block*>(layout.triangles.data())),
         rays_(rays) {}
 
-  /// Traces the rays whose limit is not below zero; they share this signature. False when they spread too far.
+  /// Traces the rays whose limit is not below zero; they share this signature. False when they spread too far, or too
+  /// many leaves turn out to lie in their beam: single rays would visit fewer.
   HWY_INLINE bool run(int signature, StackEntry* const stack) {
     static constexpr int kNext[] = {1, 2, 0};
     kz_ = signature >> 1, kx_ = kNext[kz_], ky_ = kNext[kx_];
@@ -43,8 +44,7 @@ class PacketTraversal {
       visit_leaf(layout_.root, planes, 1);
       return true;
     }
-    traverse(stack);
-    return true;
+    return traverse(stack);
   }
 
  private:
@@ -55,10 +55,13 @@ class PacketTraversal {
     const float widest = maximum(frustum_.area_at_start(), frustum_.area_at_end());
     return widest * static_cast<float>(layout_.leaf_count) > kSpread * scene + 1e-30f && layout_.leaf_count > 64;
   }
-  static constexpr float kSpread = 1024;
+  static constexpr float kSpread = 16384;
+  /// A leaf costs as many tests as the packet has vectors; with more leaves than this, single rays are as fast.
+  static constexpr int kMostLeaves = 6 * static_cast<int>(hn::MaxLanes(RayTag()));
 
-  HWY_INLINE void traverse(StackEntry* const stack) {
+  HWY_INLINE bool traverse(StackEntry* const stack) {
     StackEntry* top = stack;
+    int leaves_left = kMostLeaves;
     std::uint32_t node_index = layout_.root;
     alignas(64) float entry[W];
     for (;;) {
@@ -66,7 +69,7 @@ class PacketTraversal {
       const std::uint32_t hit = frustum_.template test<W>(node, entry);
       push(node, node_index, hit, entry, top);
       for (;;) {
-        if (top == stack) return;
+        if (top == stack) return true;
         --top;
         if (entry_distance(*top) > frustum_.length()) continue;
         const auto place = static_cast<std::uint32_t>(*top);
@@ -76,7 +79,8 @@ class PacketTraversal {
           node_index = word;
           break;
         }
-        if (visit_leaf(word, &parent.planes[0][0] + place % W, W)) return;
+        if (leaves_left-- == 0) return false;
+        if (visit_leaf(word, &parent.planes[0][0] + place % W, W)) return true;
       }
     }
   }
