@@ -146,43 +146,42 @@ class ChunkTracer {
   }
 
  private:
+  enum class Outcome { done, coherent, incoherent };
+
   /// Where packets give up they are tried ever more rarely, until one gets through.
-  bool packet(const Tile& tile, bool always) {
+  Outcome packet(const Tile& tile, bool always) {
     if (!always) {
-      if (to_skip_ > 0) return --to_skip_, false;
-      if (!looks_coherent(rays_.data(), tile, size_)) return false;
+      if (!looks_coherent(rays_.data(), tile, size_)) return Outcome::incoherent;
+      if (to_skip_ > 0) return --to_skip_, Outcome::coherent;
     }
     const BatchAnswers& a = answers_;
     const bool done = a.any() ? methods_.batch.packet_any(layout_, rays_.data(), tile, a.occluded)
                               : methods_.batch.packet_closest(layout_, rays_.data(), tile, a.hits, a.normals);
     skipping_ = done ? 0 : std::min(kMostSkipped, 2 * skipping_ + 1);
     to_skip_ = skipping_;
-    return done;
+    return done ? Outcome::done : Outcome::coherent;
   }
 
   void strips(bool always) {
-    std::size_t begin = 0;  // of the rays that wait for what is behind them to be coherent again
+    std::size_t begin = 0;  // of the incoherent rays that wait for what is behind them to be coherent again
     for (std::size_t at = 0; at < rays_.size(); at += kPacketRays) {
       const Tile strip{at, 0, static_cast<std::uint32_t>(std::min(kPacketRays, rays_.size() - at)), 1};
-      if (!packet(strip, always)) continue;
-      strip_of_others(begin, at, always);
+      const Outcome outcome = packet(strip, always);
+      if (outcome == Outcome::incoherent) continue;
+      incoherent(rays_.subspan(begin, at - begin), answers_.from(begin));
+      if (outcome == Outcome::coherent) single(rays_.data() + at, strip.columns, answers_.from(at));
       begin = at + strip.columns;
     }
-    strip_of_others(begin, rays_.size(), always);
-  }
-  void strip_of_others(std::size_t begin, std::size_t end, bool always) {
-    if (begin >= end) return;
-    if (always)
-      single(rays_.data() + begin, end - begin, answers_.from(begin));
-    else
-      incoherent(rays_.subspan(begin, end - begin), answers_.from(begin));
+    if (begin < rays_.size()) incoherent(rays_.subspan(begin), answers_.from(begin));
   }
 
   void tile(const Tile& tile, bool always) {
-    if (packet(tile, always)) return;
+    const Outcome outcome = packet(tile, always);
+    if (outcome == Outcome::done) return;
     for (std::uint32_t row = 0; row < tile.rows; ++row) {
       const std::size_t begin = tile.first + row * tile.stride;
-      if (always) {
+      // Rays in flight lose on coherent rays: the branches they save are predicted well.
+      if (outcome == Outcome::coherent) {
         single(rays_.data() + begin, tile.columns, answers_.from(begin));
         continue;
       }
