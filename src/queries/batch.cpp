@@ -1,5 +1,6 @@
 // Chunks of a stream of rays: tiles of pixels go as coherent packets, what is not coherent as rays in flight or one by
-// one. Everything is decided from the rays and from counts of steps, never from time, and no decision changes an answer.
+// one. Everything is decided from the rays and from counts of steps, never from time, and no decision changes an
+// answer.
 #include "queries/batch.h"
 
 #include <algorithm>
@@ -85,8 +86,8 @@ float mean_difference(std::span<const Ray> rays, std::size_t distance, float siz
   return 4 * count < kSamples ? kInfinity : sum / static_cast<float>(count);
 }
 
-/// The rays of a picture come row by row: then the ray below a ray is as near to it as its neighbour. Finds the distance
-/// at which rays differ least, if tiles of such rows are narrower than rows of 64. 0 if there is none.
+/// The rays of a picture come row by row: then the ray below a ray is as near to it as its neighbour. Finds the
+/// distance at which rays differ least, if tiles of such rows are narrower than rows of 64. 0 if there is none.
 std::size_t find_row(std::span<const Ray> rays, float size) {
   constexpr std::size_t kLeast = 32, kMost = 4096, kStep = 8;
   if (rays.size() < 8192) return 0;

@@ -28,8 +28,9 @@ constexpr Isa kIsas[] = {
     {"scalar", HWY_BASELINE_SCALAR},
 };
 
-constexpr Traversal kTraversals[] = {Traversal::single, Traversal::packet4,  Traversal::range,       Traversal::partition,
-                                     Traversal::batch,  Traversal::coherent, Traversal::interleaved, Traversal::sorted};
+constexpr Traversal kTraversals[] = {Traversal::single,      Traversal::packet4, Traversal::range,
+                                     Traversal::partition,   Traversal::batch,   Traversal::coherent,
+                                     Traversal::interleaved, Traversal::sorted};
 constexpr std::uint32_t kSmallestPacket = 16, kLargestPacket = 1024;
 
 bool runs_here(const Isa& isa) {
@@ -67,9 +68,9 @@ const char* name(Mode mode) {
 Result<Traversal> find_traversal(std::string_view text) {
   for (Traversal traversal : kTraversals)
     if (text == name(traversal)) return traversal;
-  return {ErrorCode::unknown_name,
-          "unknown traversal '" + std::string(text) + "'; there are: single, packet4, range, partition, batch, coherent, "
-                                                                    "interleaved, sorted"};
+  return {ErrorCode::unknown_name, "unknown traversal '" + std::string(text) +
+                                       "'; there are: single, packet4, range, partition, batch, coherent, "
+                                       "interleaved, sorted"};
 }
 
 const char* name(Traversal traversal) {
@@ -169,7 +170,8 @@ Result<TraversalKernels> select_traversal(layouts::LayoutId layout, Mode mode, c
     default:
       break;
   }
-  if (options.terminating) return {ErrorCode::invalid_argument, "single, terminating rays and batches are not select_traversal's part"};
+  if (options.terminating)
+    return {ErrorCode::invalid_argument, "single, terminating rays and batches are not select_traversal's part"};
   return unending_kernels(mode);
 }
 

@@ -1,6 +1,6 @@
 // Sorting of incoherent rays by octant, origin and coarse direction, with a radix sort over keys of 22 bits (rays in
-// order of such keys: Moon, Byun, Kim, Kim, Min and Yoon 2010, bib key moon2010; Aila and Karras 2010, bib key
-// aila2010). The rays themselves are moved once, at the end. Linear time.
+// order of such keys: Moon and others 2010, bib key moon2010; Aila and Karras 2010, bib key aila2010). The rays
+// themselves are moved once, at the end. Linear time.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -7,9 +7,9 @@
 // scene have in common, and a plane through both is outside all rays in between. So rays from one point, rays to one
 // point and parallel rays all give a narrow beam.
 //
-// Rounding: with M the largest |x| + |Z| of origins and scene, each of the few steps to a plane and to its distance from
-// a box is off by at most 2^-24 times 2 M, fewer than 16 of them follow each other, and the triangle tests may take a
-// vertex to be 4 * 2^-24 M from where it is (ray_setup.h). The planes are moved out by 64 * 2^-24 M.
+// Rounding: with M the largest |x| + |Z| of origins and scene, each of the few steps to a plane and to its distance
+// from a box is off by at most 2^-24 times 2 M, fewer than 16 of them follow each other, and the triangle tests may
+// take a vertex to be 4 * 2^-24 M from where it is (ray_setup.h). The planes are moved out by 64 * 2^-24 M.
 #if defined(BOXWOOD_QUERIES_KERNELS_BATCH_FRUSTUM_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BOXWOOD_QUERIES_KERNELS_BATCH_FRUSTUM_INL_H_
 #undef BOXWOOD_QUERIES_KERNELS_BATCH_FRUSTUM_INL_H_

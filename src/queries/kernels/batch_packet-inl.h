@@ -1,8 +1,8 @@
 // Coherent packets of up to 64 rays through wide nodes. Inner nodes are tested once for the whole packet, against the
 // beam that encloses its rays (batch_frustum-inl.h); leaves by a vector of rays at a time: first the leaf's box, by the
-// arithmetic of a single ray, then its triangles one by one. So each ray finds what it finds alone: it is tested against
-// the triangles of every leaf whose box it meets, by the same operations, and of several hits at one t the lowest id is
-// taken whatever the order.
+// arithmetic of a single ray, then its triangles one by one. So each ray finds what it finds alone: it is tested
+// against the triangles of every leaf whose box it meets, by the same operations, and of several hits at one t the
+// lowest id is taken whatever the order.
 #if defined(BOXWOOD_QUERIES_KERNELS_BATCH_PACKET_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BOXWOOD_QUERIES_KERNELS_BATCH_PACKET_INL_H_
 #undef BOXWOOD_QUERIES_KERNELS_BATCH_PACKET_INL_H_
@@ -163,8 +163,7 @@ class PacketTraversal {
       const auto u = hn::Sub(hn::Mul(cx, by), hn::Mul(cy, bx));
       const auto v = hn::Sub(hn::Mul(ax, cy), hn::Mul(ay, cx));
       const auto w = hn::Sub(hn::Mul(bx, ay), hn::Mul(by, ax));
-      const auto tiny =
-          hn::Le(hn::Min(hn::Min(hn::Abs(u), hn::Abs(v)), hn::Abs(w)), hn::Set(d, kTinyEdgeFunction));
+      const auto tiny = hn::Le(hn::Min(hn::Min(hn::Abs(u), hn::Abs(v)), hn::Abs(w)), hn::Set(d, kTinyEdgeFunction));
       const auto limit = hn::Load(d, rays_.limit + i);
       const auto nearest = hn::Min(hn::Min(hn::Mul(az, scale), hn::Mul(bz, scale)), hn::Mul(cz, scale));
       const auto found = hn::And(hn::And(active, hn::Or(same_sign(d, u, v, w), tiny)),
@@ -240,7 +239,8 @@ class PacketTraversal {
       const auto t = hn::Div(hn::Add(hn::Add(hn::Mul(u, z0), hn::Mul(v, z1)), hn::Mul(w, z2)), hn::Mul(sum, dz));
       std::uint32_t sound = wanted & double_bits(dd, hn::Gt(sum, zero));
       shorter |= take(block, lane, at, sound, hn::DemoteTo(df, t), v, w, sum);
-      for (sound ^= wanted; sound; sound &= sound - 1) shorter |= locate_edge_on(block, lane, at + std::countr_zero(sound));
+      for (sound ^= wanted; sound; sound &= sound - 1)
+        shorter |= locate_edge_on(block, lane, at + std::countr_zero(sound));
     }
     return shorter;
   }
@@ -321,8 +321,7 @@ class PacketTraversal {
       const auto u = dot_without_fusing(d, sx, sy, sz, px, py, pz);
       const auto v = dot_without_fusing(d, dx, dy, dz, qx, qy, qz);
       const auto w = hn::Sub(hn::Sub(determinant, u), v);
-      const auto inside =
-          hn::And(active, hn::And(same_sign(d, u, v, w), hn::Ne(determinant, hn::Zero(d))));
+      const auto inside = hn::And(active, hn::And(same_sign(d, u, v, w), hn::Ne(determinant, hn::Zero(d))));
       if (HWY_LIKELY(hn::AllFalse(d, inside))) continue;
       const auto r = hn::Div(hn::Set(d, 1.0f), determinant);
       const auto t = hn::Mul(dot_without_fusing(d, e2x, e2y, e2z, qx, qy, qz), r);
@@ -381,15 +380,15 @@ HWY_INLINE void answer(const Layout& layout, const PacketRays& rays, float signa
       answers.occluded[place] = hit;
       continue;
     }
-    answers.hits[place] = !hit ? Hit{}
-                               : Hit{rays.limit[slot] * rays.t_scale[slot],
-                                     static_cast<float>(rays.u[slot] / rays.sum[slot]),
-                                     static_cast<float>(rays.v[slot] / rays.sum[slot]), rays.primitive[slot]};
+    answers.hits[place] =
+        !hit ? Hit{}
+             : Hit{rays.limit[slot] * rays.t_scale[slot], static_cast<float>(rays.u[slot] / rays.sum[slot]),
+                   static_cast<float>(rays.v[slot] / rays.sum[slot]), rays.primitive[slot]};
     if (!answers.normals) continue;
     answers.normals[place] = {};
     if (hit)
-      answers.normals[place] = triangle_of<Leaf>(blocks[rays.triangle[slot] / 8],
-                                                 static_cast<int>(rays.triangle[slot] % 8)).normal();
+      answers.normals[place] =
+          triangle_of<Leaf>(blocks[rays.triangle[slot] / 8], static_cast<int>(rays.triangle[slot] % 8)).normal();
   }
 }
 
@@ -406,8 +405,7 @@ bool trace_packet(const Layout& layout, const Ray* rays, const Tile& tile, Packe
   const hn::RebindToUnsigned<RayTag> du;
   const int lanes = static_cast<int>(hn::Lanes(d));
   std::uint32_t present = 0;
-  for (int slot = 0; slot < PacketRays::kRays; ++slot)
-    present |= 1u << (static_cast<int>(packet.signature[slot]) + 1);
+  for (int slot = 0; slot < PacketRays::kRays; ++slot) present |= 1u << (static_cast<int>(packet.signature[slot]) + 1);
   const std::uint32_t signatures = present >> 1;
   if (std::popcount(signatures) > kPasses) return false;
   packet.prepare_boxes(layout.bounds);

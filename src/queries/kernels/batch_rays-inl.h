@@ -80,8 +80,7 @@ struct alignas(64) PacketRays {
         valid = hn::And(valid, hn::Lt(hn::Abs(hn::Load(d, origin[axis] + i)), infinity));
       valid = hn::And(valid, hn::Gt(largest, zero));
       const auto biased = hn::ShiftRight<23>(hn::BitCast(di, largest));
-      const auto exponent =
-          hn::Min(hn::Max(hn::Sub(biased, hn::Set(di, 127)), hn::Set(di, -126)), hn::Set(di, 126));
+      const auto exponent = hn::Min(hn::Max(hn::Sub(biased, hn::Set(di, 127)), hn::Set(di, -126)), hn::Set(di, 126));
       const auto down = hn::BitCast(d, hn::ShiftLeft<23>(hn::Sub(hn::Set(di, 127), exponent)));
       const auto up = hn::BitCast(d, hn::ShiftLeft<23>(hn::Add(hn::Set(di, 127), exponent)));
       const auto from = hn::Load(d, tmin + i);
@@ -91,8 +90,8 @@ struct alignas(64) PacketRays {
       dx = hn::Mul(dx, down), dy = hn::Mul(dy, down), dz = hn::Mul(dz, down);
       const auto sx = hn::Abs(dx), sy = hn::Abs(dy), sz = hn::Abs(dz);
       const auto x_first = hn::And(hn::Ge(sx, sy), hn::Ge(sx, sz));
-      const auto main = hn::IfThenElse(x_first, zero, hn::IfThenElse(hn::And(hn::Lt(sx, sy), hn::Ge(sy, sz)),
-                                                                     hn::Set(d, 2.0f), hn::Set(d, 4.0f)));
+      const auto main = hn::IfThenElse(
+          x_first, zero, hn::IfThenElse(hn::And(hn::Lt(sx, sy), hn::Ge(sy, sz)), hn::Set(d, 2.0f), hn::Set(d, 4.0f)));
       const auto on_main = hn::IfThenElse(x_first, dx, hn::IfThenElse(hn::Eq(main, hn::Set(d, 2.0f)), dy, dz));
       const auto sign = hn::IfThenElseZero(hn::Lt(on_main, zero), hn::Set(d, 1.0f));
       hn::Store(hn::IfThenElse(valid, hn::Add(main, sign), hn::Set(d, -1.0f)), d, signature + i);

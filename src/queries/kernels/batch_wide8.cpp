@@ -14,7 +14,8 @@ HWY_BEFORE_NAMESPACE();
 namespace boxwood::queries::HWY_NAMESPACE {
 
 BatchKernels wide8_batch_kernels(Mode mode) {
-  return mode == Mode::robust ? make_batch_kernels<8, TriangleLeaf, true>() : make_batch_kernels<8, TriangleLeaf, false>();
+  return mode == Mode::robust ? make_batch_kernels<8, TriangleLeaf, true>()
+                              : make_batch_kernels<8, TriangleLeaf, false>();
 }
 
 }  // namespace boxwood::queries::HWY_NAMESPACE

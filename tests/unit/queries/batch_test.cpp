@@ -19,8 +19,8 @@ constexpr Traversal kBatches[] = {Traversal::batch, Traversal::coherent, Travers
 Accel make(const MeshView& mesh, const std::string& layout, const std::string& isa = {},
            const std::string& builder = "binned-sah",
            std::shared_ptr<Executor> executor = std::make_shared<SequentialExecutor>()) {
-  auto accel =
-      Accel::build(mesh, {.build = {.builder = builder}, .layout = layout, .isa = isa, .executor = std::move(executor)});
+  auto accel = Accel::build(
+      mesh, {.build = {.builder = builder}, .layout = layout, .isa = isa, .executor = std::move(executor)});
   EXPECT_TRUE(accel) << accel.error().message;
   return std::move(*accel);
 }
