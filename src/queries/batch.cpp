@@ -15,7 +15,7 @@ constexpr std::size_t kChunk = 8192, kSortedChunk = 32768;
 /// Rays for which one decision between rays in flight and single rays holds.
 constexpr std::size_t kPiece = 512;
 /// A ray that takes fewer steps than this on average is done before its start among others has paid.
-constexpr std::size_t kFewSteps = 8;
+constexpr std::size_t kFewSteps = 6;
 /// Pieces that go one by one until rays in flight are tried again.
 constexpr std::size_t kRetry = 16;
 /// Tiles passed over, at most, until a packet is tried again where packets have given up.
