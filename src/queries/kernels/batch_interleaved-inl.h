@@ -133,9 +133,11 @@ class Interleaved {
   };
 
   HWY_INLINE void prefetch(std::uint32_t word, bool is_leaf) const {
-    const auto* node = reinterpret_cast<const char*>(nodes_ + word);
-    const auto* block = reinterpret_cast<const char*>(blocks_ + layouts::leaf_first(word));
-    const char* address = is_leaf ? block : node;
+    // Numbers, since one of the two is no address of anything.
+    const std::uintptr_t node = reinterpret_cast<std::uintptr_t>(nodes_) + std::uintptr_t{word} * sizeof(WideNode<8>);
+    const std::uintptr_t block =
+        reinterpret_cast<std::uintptr_t>(blocks_) + std::uintptr_t{layouts::leaf_first(word)} * sizeof(Block);
+    const auto* address = reinterpret_cast<const char*>(is_leaf ? block : node);
     for (int line = 0; line < 4; ++line) hwy::Prefetch(address + 64 * line);
   }
 
