@@ -89,7 +89,7 @@ void expect_the_answers_of_single_rays(const Accel& accel, std::span<const Ray> 
     ASSERT_TRUE(accel.any_hits(rays, expected_any, mode, {.traversal = Traversal::single}));
     for (const Traversal traversal : kBatches) {
       const std::string at = where + ", " + accel.isa() + ", " + queries::name(mode) + ", " + queries::name(traversal);
-      std::memset(hits.data(), 0xab, n * sizeof(Hit));
+      std::fill(hits.begin(), hits.end(), Hit{-1, -2, -3, 123456789});
       std::fill(any.begin(), any.end(), std::uint8_t{7});
       ASSERT_TRUE(accel.closest_hits(rays, hits, normals, mode, {.traversal = traversal})) << at;
       ASSERT_TRUE(accel.any_hits(rays, any, mode, {.traversal = traversal})) << at;
@@ -141,7 +141,9 @@ TEST(Batch, AgreesWithBruteForce) {
       const auto exact = queries::brute_force_closest(mesh, camera[i]);
       if (exact.margin < 1e-5 && exact.primitive != layouts::kInvalidPrimitive) continue;
       ASSERT_EQ(hits[i].primitive, exact.primitive) << queries::name(traversal) << " ray " << i;
-      if (hits[i]) ASSERT_NEAR(hits[i].t, exact.t, 1e-5) << queries::name(traversal) << " ray " << i;
+      if (hits[i]) {
+        ASSERT_NEAR(hits[i].t, exact.t, 1e-5) << queries::name(traversal) << " ray " << i;
+      }
     }
   }
 }
