@@ -113,8 +113,11 @@ std::size_t Contestant::packet_size() const {
       return 1;
     case queries::Traversal::packet4:
       return 4;
-    default:
+    case queries::Traversal::range:
+    case queries::Traversal::partition:
       return traversal.packet_size;
+    default:
+      return 0;  // of no fixed size
   }
 }
 

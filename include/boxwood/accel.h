@@ -110,14 +110,17 @@ class Accel {
   bool any_hit(const Ray& ray, queries::Mode mode = queries::Mode::robust) const;
 
   /// Batches, in parallel on the executor given at build. The spans must be equally long (else invalid_argument, and
-  /// nothing is written); `normals` may be empty. Traversals other than the default give the same hits; errors: a
-  /// layout that has not got the one asked for, a packet size out of range.
+  /// nothing is written); `normals` may be empty. By default the way of tracing is picked for each tile of rays
+  /// (Traversal::batch): faster than a loop over closest_hit, above all where neighbours in the array are neighbours in
+  /// a picture, row by row or tile by tile. Every traversal gives the same hits; errors: a layout that has not got the
+  /// one asked for, a packet size out of range, not enough memory. Extra memory does not grow with the number of rays.
   Status closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<Vec3> normals = {},
                       queries::Mode mode = queries::Mode::robust,
                       const queries::TraversalOptions& traversal = {}) const;
   Status any_hits(std::span<const Ray> rays, std::span<std::uint8_t> occluded,
                   queries::Mode mode = queries::Mode::robust, const queries::TraversalOptions& traversal = {}) const;
-  /// The same, counting the work of each ray (slower; the traversal is the same code).
+  /// The same, counting the work of each ray (slower; the traversal is the same code, but batches of wide layouts are
+  /// counted as single rays).
   Status closest_hits_counted(std::span<const Ray> rays, std::span<Hit> hits, std::span<queries::Counts> per_ray,
                               queries::Mode mode = queries::Mode::robust,
                               const queries::TraversalOptions& traversal = {}) const;

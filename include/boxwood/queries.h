@@ -38,20 +38,26 @@ const char* name(Mode mode);
 
 /// How rays go through a tree. `single`: one by one. `packet4`: four at a time, a mask saying which are active.
 /// `range`: a packet goes where its first active ray goes, the rays before that one being inactive. `partition`: a
-/// packet keeps the numbers of its active rays in front. Only the layout `linear` has packets. All give the same hits.
-enum class Traversal { single, packet4, range, partition };
+/// packet keeps the numbers of its active rays in front. Only the layout `linear` has these three packets.
+/// `batch`, the default of calls with many rays, picks for each tile of rays: coherent packets, many rays in flight or
+/// single rays; on the layouts `linear` and `wide4` it is `single`. The other three force one way, and need the layout
+/// `wide8` or `wide8-quads`: `coherent`: packets of 64 rays, inner nodes tested once for the beam that encloses them;
+/// `interleaved`: many rays in flight, in phases; `sorted`: the same after sorting blocks of rays by octant, origin and
+/// direction. See docs/batches.md. All give the same hits.
+enum class Traversal { single, packet4, range, partition, batch, coherent, interleaved, sorted };
 Result<Traversal> find_traversal(std::string_view name);
 const char* name(Traversal traversal);
 
 struct TraversalOptions {
-  Traversal traversal = Traversal::single;
+  Traversal traversal = Traversal::batch;
   /// Rays in a packet of `range` and `partition`, which take neighbours in the array: 16 to 1024.
   std::uint32_t packet_size = 256;
   /// False: hits are found as ever but neither shorten a ray nor end it, so that the counts are those the surface area
   /// cost assumes. Only for the layout `linear`.
   bool terminating = true;
 
-  bool is_default() const { return traversal == Traversal::single && terminating; }
+  /// One ray after the other, as select_kernels' kernels do it.
+  bool is_single() const { return traversal == Traversal::single && terminating; }
 };
 
 /// Work done by a set of rays. A node visit tests the boxes of all children of one node (linear: the node's own box); a
@@ -98,10 +104,11 @@ struct TraversalKernels {
   void (*any)(const layouts::Layout&, const Ray* rays, std::size_t count, const TraversalOptions&,
               std::uint8_t* occluded, Counts* per_ray);
 };
-/// Kernels for options that are not the default ones, which select_kernels has. They are the same code on every
-/// instruction set. Errors: a layout that has not got that traversal, a packet size out of range.
+/// Kernels for packets of the layout `linear` and for rays that are not terminating; select_kernels has those for
+/// single, terminating rays, and batches are Accel's. They are the same code on every instruction set. Errors: a layout
+/// that has not got that traversal, a packet size out of range, a traversal that is not one of these.
 Result<TraversalKernels> select_traversal(layouts::LayoutId layout, Mode mode, const TraversalOptions& options);
-/// What select_traversal would refuse; default options are never refused.
+/// Can Accel trace rays so in this layout? Default options and single, terminating rays never fail.
 Status check_traversal(layouts::LayoutId layout, const TraversalOptions& options);
 
 /// A closest hit by testing every triangle of the mesh in double precision (the determinant form of Moeller and

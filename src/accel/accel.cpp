@@ -7,6 +7,7 @@
 #include "boxwood/metrics.h"
 #include "boxwood/optimizers.h"
 #include "layouts/encode.h"
+#include "queries/batch.h"
 
 namespace boxwood {
 namespace {
@@ -50,12 +51,15 @@ Status same_length(std::size_t rays, std::size_t results, const char* what) {
 
 struct Accel::State {
   layouts::Layout layout;
-  queries::Kernels robust, fast;
+  queries::BatchMethods robust, fast;
   std::string isa;
   std::shared_ptr<Executor> executor;
   std::size_t excluded = 0;
 
-  const queries::Kernels& kernels(queries::Mode mode) const { return mode == queries::Mode::robust ? robust : fast; }
+  const queries::BatchMethods& methods(queries::Mode mode) const {
+    return mode == queries::Mode::robust ? robust : fast;
+  }
+  const queries::Kernels& kernels(queries::Mode mode) const { return methods(mode).single; }
 
   /// Hands ranges of rays to `f`, each a whole number of packets, so that packets do not depend on the threads.
   template <class F>
@@ -63,14 +67,29 @@ struct Accel::State {
     using queries::Traversal;
     const bool has_size = traversal.traversal == Traversal::range || traversal.traversal == Traversal::partition;
     const std::size_t packet = has_size ? traversal.packet_size : 4;
-    const std::size_t chunk = packet * std::max<std::size_t>(1, kRaysPerChunk / packet);
+    return for_chunks(count, packet * std::max<std::size_t>(1, kRaysPerChunk / packet), f);
+  }
+  template <class F>
+  Status for_chunks(std::size_t count, std::size_t chunk, F f) const {
     try {
       executor->for_chunks(count, chunk,
                            [&](std::size_t, std::size_t begin, std::size_t end) { f(begin, end - begin); });
       return {};
     } catch (const std::bad_alloc&) {
-      return {ErrorCode::out_of_memory, "not enough memory for the stacks of " + std::to_string(count) + " rays"};
+      return {ErrorCode::out_of_memory, "not enough memory to trace " + std::to_string(count) + " rays"};
     }
+  }
+  /// Batches count nothing: with counts, and on layouts without batches, they are single rays.
+  bool is_single(const queries::TraversalOptions& traversal, bool counted) const {
+    if (traversal.is_single()) return true;
+    return traversal.terminating && queries::is_batch(traversal.traversal) && (counted || !robust.has_batch);
+  }
+  Status batch(std::span<const Ray> rays, const queries::BatchAnswers& answers, queries::Mode mode,
+               queries::Traversal traversal) const {
+    const auto cut = queries::cut_batch(methods(mode), rays, traversal);
+    return for_chunks(rays.size(), cut.chunk, [&](std::size_t begin, std::size_t n) {
+      queries::trace_batch(methods(mode), layout, traversal, cut.row, rays.subspan(begin, n), answers.from(begin));
+    });
   }
   Status closest(std::span<const Ray> rays, Hit* hits, Vec3* normals, queries::Counts* per_ray, queries::Mode mode,
                  const queries::TraversalOptions& traversal) const;
@@ -112,8 +131,8 @@ Result<Accel> Accel::from_tree(const MeshView& mesh, const tree::BinaryTree& tre
     if (!id) return id.error();
     auto isa = queries::choose_isa(options.isa);
     if (!isa) return isa.error();
-    auto robust = queries::select_kernels(*id, queries::Mode::robust, *isa);
-    auto fast = queries::select_kernels(*id, queries::Mode::fast, *isa);
+    auto robust = queries::select_batch(*id, queries::Mode::robust, *isa);
+    auto fast = queries::select_batch(*id, queries::Mode::fast, *isa);
     if (!robust) return robust.error();
     if (!fast) return fast.error();
     auto layout = encode(*id, tree, mesh, options, *state->executor);
@@ -150,13 +169,16 @@ bool Accel::any_hit(const Ray& ray, queries::Mode mode) const {
 Status Accel::State::closest(std::span<const Ray> rays, Hit* hits, Vec3* normals, queries::Counts* per_ray,
                              queries::Mode mode, const queries::TraversalOptions& traversal) const {
   const auto at = [](auto* array, std::size_t begin) { return array ? array + begin : nullptr; };
-  if (traversal.is_default())
+  if (auto status = queries::check_traversal(layout.id, traversal); !status) return status;
+  if (is_single(traversal, per_ray))
     return for_rays(rays.size(), traversal, [&](std::size_t begin, std::size_t n) {
       if (per_ray)
         kernels(mode).closest_counted(layout, rays.data() + begin, n, hits + begin, per_ray + begin);
       else
         kernels(mode).closest(layout, rays.data() + begin, n, hits + begin, at(normals, begin));
     });
+  if (traversal.terminating && queries::is_batch(traversal.traversal))
+    return batch(rays, {hits, normals, nullptr}, mode, traversal.traversal);
   const auto other = queries::select_traversal(layout.id, mode, traversal);
   if (!other) return other.error();
   return for_rays(rays.size(), traversal, [&](std::size_t begin, std::size_t n) {
@@ -166,13 +188,16 @@ Status Accel::State::closest(std::span<const Ray> rays, Hit* hits, Vec3* normals
 
 Status Accel::State::any(std::span<const Ray> rays, std::uint8_t* occluded, queries::Counts* per_ray,
                          queries::Mode mode, const queries::TraversalOptions& traversal) const {
-  if (traversal.is_default())
+  if (auto status = queries::check_traversal(layout.id, traversal); !status) return status;
+  if (is_single(traversal, per_ray))
     return for_rays(rays.size(), traversal, [&](std::size_t begin, std::size_t n) {
       if (per_ray)
         kernels(mode).any_counted(layout, rays.data() + begin, n, occluded + begin, per_ray + begin);
       else
         kernels(mode).any(layout, rays.data() + begin, n, occluded + begin);
     });
+  if (traversal.terminating && queries::is_batch(traversal.traversal))
+    return batch(rays, {nullptr, nullptr, occluded}, mode, traversal.traversal);
   const auto other = queries::select_traversal(layout.id, mode, traversal);
   if (!other) return other.error();
   return for_rays(rays.size(), traversal, [&](std::size_t begin, std::size_t n) {

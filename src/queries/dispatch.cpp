@@ -5,6 +5,7 @@
 // targets.h first: it sets which targets Highway's headers see.
 #include <hwy/targets.h>
 
+#include "queries/batch.h"
 #include "queries/kernels/kernels.h"
 
 namespace boxwood::queries {
@@ -27,7 +28,9 @@ constexpr Isa kIsas[] = {
     {"scalar", HWY_BASELINE_SCALAR},
 };
 
-constexpr Traversal kTraversals[] = {Traversal::single, Traversal::packet4, Traversal::range, Traversal::partition};
+constexpr Traversal kTraversals[] = {Traversal::single,      Traversal::packet4, Traversal::range,
+                                     Traversal::partition,   Traversal::batch,   Traversal::coherent,
+                                     Traversal::interleaved, Traversal::sorted};
 constexpr std::uint32_t kSmallestPacket = 16, kLargestPacket = 1024;
 
 bool runs_here(const Isa& isa) {
@@ -38,6 +41,10 @@ const Isa* find_isa(std::string_view name) {
   for (const Isa& isa : kIsas)
     if (name == isa.name) return &isa;
   return nullptr;
+}
+
+bool has_batch_kernels(layouts::LayoutId layout) {
+  return layout == layouts::LayoutId::wide8 || layout == layouts::LayoutId::wide8_quads;
 }
 
 std::string join(const std::vector<std::string>& words) {
@@ -61,12 +68,14 @@ const char* name(Mode mode) {
 Result<Traversal> find_traversal(std::string_view text) {
   for (Traversal traversal : kTraversals)
     if (text == name(traversal)) return traversal;
-  return {ErrorCode::unknown_name,
-          "unknown traversal '" + std::string(text) + "'; there are: single, packet4, range, partition"};
+  return {ErrorCode::unknown_name, "unknown traversal '" + std::string(text) +
+                                       "'; there are: single, packet4, range, partition, batch, coherent, "
+                                       "interleaved, sorted"};
 }
 
 const char* name(Traversal traversal) {
-  constexpr const char* kNames[] = {"single", "packet4", "range", "partition"};
+  constexpr const char* kNames[] = {"single", "packet4",  "range",       "partition",
+                                    "batch",  "coherent", "interleaved", "sorted"};
   return kNames[static_cast<std::size_t>(traversal)];
 }
 
@@ -122,12 +131,34 @@ Result<Kernels> select_kernels(layouts::LayoutId layout, Mode mode, std::string_
   return {ErrorCode::unknown_name, "there is no layout number " + std::to_string(static_cast<int>(layout))};
 }
 
+Result<BatchMethods> select_batch(layouts::LayoutId layout, Mode mode, std::string_view isa) {
+  const auto single = select_kernels(layout, mode, isa);
+  if (!single) return single.error();
+  const auto chosen = choose_isa(isa);
+  if (!chosen) return chosen.error();
+  BatchMethods methods;
+  methods.single = *single;
+  methods.has_batch = has_batch_kernels(layout);
+  const std::int64_t target = find_isa(*chosen)->target;
+  if (methods.has_batch)
+    methods.batch = layout == layouts::LayoutId::wide8 ? wide8_batch_kernels(mode, target)
+                                                       : wide8_quads_batch_kernels(mode, target);
+  return methods;
+}
+
 Status check_traversal(layouts::LayoutId layout, const TraversalOptions& options) {
-  if (options.is_default()) return {};
+  if (options.is_single() || (options.traversal == Traversal::batch && options.terminating)) return {};
+  if (layout != layouts::LayoutId::linear && !options.terminating)
+    return {ErrorCode::unsupported, std::string("the layout ") + layouts::name(layout) +
+                                        " has terminating rays only; non-terminating rays take the layout linear"};
+  if (is_batch(options.traversal) && options.traversal != Traversal::batch) {
+    if (has_batch_kernels(layout)) return {};
+    return {ErrorCode::unsupported, std::string("the layout ") + layouts::name(layout) + " has no traversal " +
+                                        name(options.traversal) + "; it takes the layout wide8 or wide8-quads"};
+  }
   if (layout != layouts::LayoutId::linear)
-    return {ErrorCode::unsupported,
-            std::string("the layout ") + layouts::name(layout) + " has no traversal but single, terminating; " +
-                (options.terminating ? name(options.traversal) : "non-terminating") + " rays take the layout linear"};
+    return {ErrorCode::unsupported, std::string("the layout ") + layouts::name(layout) + " has no traversal " +
+                                        name(options.traversal) + "; it takes the layout linear"};
   const bool has_size = options.traversal == Traversal::range || options.traversal == Traversal::partition;
   if (has_size && (options.packet_size < kSmallestPacket || options.packet_size > kLargestPacket))
     return {ErrorCode::out_of_range, "the packet size is " + std::to_string(options.packet_size) +
@@ -145,10 +176,11 @@ Result<TraversalKernels> select_traversal(layouts::LayoutId layout, Mode mode, c
       return range_kernels(mode);
     case Traversal::partition:
       return partition_kernels(mode);
-    case Traversal::single:
+    default:
       break;
   }
-  if (options.terminating) return {ErrorCode::invalid_argument, "single, terminating rays are select_kernels' part"};
+  if (options.terminating)
+    return {ErrorCode::invalid_argument, "single, terminating rays and batches are not select_traversal's part"};
   return unending_kernels(mode);
 }
 

@@ -243,7 +243,8 @@ TEST(Traversal, RefusesWhatALayoutHasNot) {
     EXPECT_TRUE(linear.closest_hits(rays, hits, {}, Mode::robust, {Traversal::packet4, size, true}));
     EXPECT_TRUE(linear.closest_hits(rays, hits, {}, Mode::robust, {Traversal::single, size, false}));
   }
-  for (const auto traversal : {Traversal::single, Traversal::packet4, Traversal::range, Traversal::partition})
+  for (const auto traversal : {Traversal::single, Traversal::packet4, Traversal::range, Traversal::partition,
+                               Traversal::batch, Traversal::coherent, Traversal::interleaved, Traversal::sorted})
     EXPECT_EQ(*queries::find_traversal(queries::name(traversal)), traversal);
   EXPECT_FALSE(queries::find_traversal("dance"));
 }

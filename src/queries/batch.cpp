@@ -1,0 +1,293 @@
+// Chunks of a stream of rays: tiles of pixels go as coherent packets, what is not coherent as rays in flight or one by
+// one. Everything is decided from the rays and from counts of steps, never from time, and no decision changes an
+// answer.
+#include "queries/batch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace boxwood::queries {
+namespace {
+
+/// Rays in a chunk. Sorting wants many; more chunks share out better over threads.
+constexpr std::size_t kChunk = 8192, kSortedChunk = 32768;
+/// Rays for which one decision between rays in flight and single rays holds.
+constexpr std::size_t kPiece = 512;
+/// A ray that takes fewer steps than this on average is done before its start among others has paid.
+constexpr std::size_t kFewSteps = 6;
+/// Pieces that go one by one until rays in flight are tried again.
+constexpr std::size_t kRetry = 16;
+/// Tiles passed over, at most, until a packet is tried again where packets have given up.
+constexpr std::size_t kMostSkipped = 32;
+
+bool is_sound(const Ray& ray) {
+  const Vec3 d = ray.direction;
+  const float largest = maximum(maximum(std::fabs(d.x), std::fabs(d.y)), std::fabs(d.z));
+  return largest > 0 && is_finite(d) && is_finite(ray.origin) && ray.tmin <= ray.tmax;
+}
+
+Vec3 scaled_direction(const Ray& ray) {
+  const Vec3 d = ray.direction;
+  return (1 / maximum(maximum(std::fabs(d.x), std::fabs(d.y)), std::fabs(d.z))) * d;
+}
+
+float largest_component(const Vec3& v) {
+  return maximum(maximum(std::fabs(v.x), std::fabs(v.y)), std::fabs(v.z));
+}
+
+/// How different two rays are: of their directions, the largest being 1, and of their origins in units of `size`.
+float difference(const Ray& a, const Ray& b, float size) {
+  return largest_component(scaled_direction(a) - scaled_direction(b)) + largest_component(a.origin - b.origin) / size;
+}
+
+/// The k-th of places spread evenly over [0, range) that are no multiples of anything: places at equal distances could
+/// all be ends of rows.
+std::size_t spread(std::size_t k, std::size_t range) {
+  const double x = 0.5 + 0.6180339887498949 * static_cast<double>(k);
+  return static_cast<std::size_t>((x - std::floor(x)) * static_cast<double>(range));
+}
+
+float size_of(const Box& bounds) {
+  const float size = largest_component(bounds.upper - bounds.lower);
+  return size > 0 ? size : 1;
+}
+
+/// Half a radian across is the most that a packet is tried with. Looks at four rays of the tile.
+bool looks_coherent(const Ray* rays, const Tile& tile, float size) {
+  constexpr float kMost = 0.5f;
+  const Ray* first = nullptr;
+  for (const std::uint32_t row : {0u, tile.rows - 1})
+    for (const std::uint32_t column : {0u, tile.columns / 2, tile.columns - 1}) {
+      const Ray& ray = rays[tile.first + row * tile.stride + column];
+      if (!is_sound(ray)) continue;
+      if (!first)
+        first = &ray;
+      else if (!(difference(*first, ray, size) < kMost))
+        return false;
+    }
+  return true;
+}
+
+/// The mean difference between rays `distance` apart, capped so that a few edges in the picture don't count.
+float mean_difference(std::span<const Ray> rays, std::size_t distance, float size) {
+  constexpr std::size_t kSamples = 24;
+  constexpr float kCap = 0.25f;
+  const std::size_t range = rays.size() - distance;
+  float sum = 0;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < kSamples; ++k) {
+    const std::size_t i = spread(k, range);
+    const Ray &a = rays[i], &b = rays[i + distance];
+    if (!is_sound(a) || !is_sound(b)) continue;
+    sum += minimum(kCap, difference(a, b, size));
+    ++count;
+  }
+  return 4 * count < kSamples ? kInfinity : sum / static_cast<float>(count);
+}
+
+/// The rays of a picture come row by row: then the ray below a ray is as near to it as its neighbour. Finds the
+/// distance at which rays differ least, if tiles of such rows are narrower than rows of 64. 0 if there is none.
+std::size_t find_row(std::span<const Ray> rays, float size) {
+  constexpr std::size_t kLeast = 32, kMost = 4096, kStep = 8;
+  if (rays.size() < 8192) return 0;
+  const std::size_t most = std::min(kMost, rays.size() / 8);
+  std::size_t best = 0;
+  float least = kInfinity;
+  const auto consider = [&](std::size_t row) {
+    const float mean = mean_difference(rays, row, size);
+    if (mean < least) least = mean, best = row;
+  };
+  for (std::size_t row = kLeast; row <= most; row += kStep) consider(row);
+  if (best == 0) return 0;
+  const std::size_t coarse = best;
+  for (std::size_t row = std::max(kLeast, coarse - kStep + 1); row < coarse + kStep; ++row) consider(row);
+  return 2 * least < mean_difference(rays, 16, size) ? best : 0;
+}
+
+/// Traces a chunk piece by piece.
+class ChunkTracer {
+ public:
+  ChunkTracer(const BatchMethods& methods, const layouts::Layout& layout, std::span<const Ray> rays,
+              const BatchAnswers& answers)
+      : methods_(methods), layout_(layout), rays_(rays), answers_(answers), size_(size_of(layout.bounds)) {}
+
+  /// Tiles of eight by eight where rows are known, else 64 rays in a row each. `always`: packets whatever the rays look
+  /// like, and single rays where a packet refuses.
+  void tiles(std::size_t row, bool always) {
+    if (row == 0) return strips(always);
+    for (std::size_t band = 0; band < rays_.size(); band += 8 * row) {
+      const std::size_t left = std::min(8 * row, rays_.size() - band), rows = left / row;
+      for (std::size_t column = 0; rows && column < row; column += 8)
+        tile({band + column, row, static_cast<std::uint32_t>(std::min<std::size_t>(8, row - column)),
+              static_cast<std::uint32_t>(rows)},
+             always);
+      // An unfinished row at the stream's end.
+      for (std::size_t begin = rows * row; begin < left; begin += kPacketRays)
+        tile({band + begin, 0, static_cast<std::uint32_t>(std::min(kPacketRays, left - begin)), 1}, always);
+    }
+    flush_rest();
+  }
+
+  void incoherent(std::span<const Ray> rays, const BatchAnswers& answers) {
+    for (std::size_t begin = 0; begin < rays.size(); begin += kPiece)
+      piece(rays.data() + begin, std::min(kPiece, rays.size() - begin), answers.from(begin));
+  }
+
+  void single(const Ray* rays, std::size_t count, const BatchAnswers& a) const {
+    if (a.any())
+      methods_.single.any(layout_, rays, count, a.occluded);
+    else
+      methods_.single.closest(layout_, rays, count, a.hits, a.normals);
+  }
+
+  std::size_t in_flight(const Ray* rays, std::size_t count, const BatchAnswers& a) const {
+    return a.any() ? methods_.batch.interleaved_any(layout_, rays, count, a.occluded)
+                   : methods_.batch.interleaved_closest(layout_, rays, count, a.hits, a.normals);
+  }
+
+ private:
+  enum class Outcome { done, coherent, incoherent };
+
+  /// Where packets give up they are tried ever more rarely, until one gets through.
+  Outcome packet(const Tile& tile, bool always) {
+    if (!always) {
+      if (!looks_coherent(rays_.data(), tile, size_)) return Outcome::incoherent;
+      if (to_skip_ > 0) return --to_skip_, Outcome::coherent;
+    }
+    const BatchAnswers& a = answers_;
+    const bool done = a.any() ? methods_.batch.packet_any(layout_, rays_.data(), tile, a.occluded)
+                              : methods_.batch.packet_closest(layout_, rays_.data(), tile, a.hits, a.normals);
+    skipping_ = done ? 0 : std::min(kMostSkipped, 2 * skipping_ + 1);
+    to_skip_ = skipping_;
+    return done ? Outcome::done : Outcome::coherent;
+  }
+
+  void strips(bool always) {
+    std::size_t begin = 0;  // of the incoherent rays that wait for what is behind them to be coherent again
+    for (std::size_t at = 0; at < rays_.size(); at += kPacketRays) {
+      const Tile strip{at, 0, static_cast<std::uint32_t>(std::min(kPacketRays, rays_.size() - at)), 1};
+      const Outcome outcome = packet(strip, always);
+      if (outcome == Outcome::incoherent) continue;
+      incoherent(rays_.subspan(begin, at - begin), answers_.from(begin));
+      if (outcome == Outcome::coherent) single(rays_.data() + at, strip.columns, answers_.from(at));
+      begin = at + strip.columns;
+    }
+    if (begin < rays_.size()) incoherent(rays_.subspan(begin), answers_.from(begin));
+  }
+
+  void tile(const Tile& tile, bool always) {
+    const Outcome outcome = packet(tile, always);
+    if (outcome == Outcome::done) return;
+    for (std::uint32_t row = 0; row < tile.rows; ++row) {
+      const std::size_t begin = tile.first + row * tile.stride;
+      // Rays in flight lose on coherent rays: the branches they save are predicted well.
+      if (outcome == Outcome::coherent) {
+        single(rays_.data() + begin, tile.columns, answers_.from(begin));
+        continue;
+      }
+      if (rest_count_ + tile.columns > kPiece) flush_rest();
+      for (std::uint32_t column = 0; column < tile.columns; ++column, ++rest_count_)
+        rest_[rest_count_] = rays_[begin + column], rest_places_[rest_count_] = begin + column;
+    }
+  }
+
+  /// Rays of tiles that were no packets are copied together, traced, and their answers handed out.
+  void flush_rest() {
+    if (rest_count_ == 0) return;
+    BatchAnswers to;
+    if (answers_.any())
+      to.occluded = rest_occluded_;
+    else
+      to.hits = rest_hits_, to.normals = answers_.normals ? rest_normals_ : nullptr;
+    piece(rest_, rest_count_, to);
+    for (std::size_t i = 0; i < rest_count_; ++i) {
+      const std::size_t place = rest_places_[i];
+      if (answers_.any()) {
+        answers_.occluded[place] = rest_occluded_[i];
+        continue;
+      }
+      answers_.hits[place] = rest_hits_[i];
+      if (answers_.normals) answers_.normals[place] = rest_normals_[i];
+    }
+    rest_count_ = 0;
+  }
+
+  void piece(const Ray* rays, std::size_t count, const BatchAnswers& answers) {
+    if (!methods_.batch.interleaves || singles_left_ > 0) {
+      singles_left_ -= singles_left_ > 0;
+      return single(rays, count, answers);
+    }
+    if (in_flight(rays, count, answers) < kFewSteps * count) singles_left_ = kRetry;
+  }
+
+  const BatchMethods& methods_;
+  const layouts::Layout& layout_;
+  std::span<const Ray> rays_;
+  const BatchAnswers& answers_;
+  float size_;
+  std::size_t singles_left_ = 0, skipping_ = 0, to_skip_ = 0;
+  std::size_t rest_count_ = 0;
+  Ray rest_[kPiece];
+  std::size_t rest_places_[kPiece];
+  Hit rest_hits_[kPiece];
+  Vec3 rest_normals_[kPiece];
+  std::uint8_t rest_occluded_[kPiece];
+};
+
+void trace_sorted(const BatchMethods& methods, const layouts::Layout& layout, std::span<const Ray> rays,
+                  const BatchAnswers& answers) {
+  const std::size_t n = rays.size();
+  AlignedBuffer<Ray> sorted(n);
+  const auto places = std::make_unique_for_overwrite<std::uint32_t[]>(n);
+  const auto scratch = std::make_unique_for_overwrite<std::uint64_t[]>(2 * n);
+  sort_rays(rays, layout.bounds, sorted.span(), {places.get(), n}, {scratch.get(), 2 * n});
+  std::vector<Hit> hits(answers.any() ? 0 : n);
+  std::vector<Vec3> normals(answers.normals ? n : 0);
+  std::vector<std::uint8_t> occluded(answers.any() ? n : 0);
+  BatchAnswers to{hits.data(), answers.normals ? normals.data() : nullptr, answers.any() ? occluded.data() : nullptr};
+  ChunkTracer(methods, layout, sorted.span(), to).in_flight(sorted.data(), n, to);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (answers.any())
+      answers.occluded[places[i]] = occluded[i];
+    else
+      answers.hits[places[i]] = hits[i];
+    if (answers.normals) answers.normals[places[i]] = normals[i];
+  }
+}
+
+}  // namespace
+
+BatchCut cut_batch(const BatchMethods& methods, std::span<const Ray> rays, Traversal traversal) {
+  if (traversal == Traversal::sorted) return {0, kSortedChunk};
+  if (!methods.has_batch || traversal == Traversal::interleaved) return {0, kChunk};
+  Box bounds;
+  for (std::size_t k = 0; k < 16 && !rays.empty(); ++k) {
+    const Ray& ray = rays[k * rays.size() / 16];
+    if (is_finite(ray.origin)) bounds.grow(ray.origin);
+  }
+  const float size = size_of(bounds);
+  // Only where neighbours are coherent are rows worth looking for.
+  std::size_t coherent = 0;
+  constexpr std::size_t kSamples = 16;
+  for (std::size_t k = 0; k < kSamples && rays.size() >= 8192; ++k) {
+    const std::size_t first = spread(k, rays.size() - 8);
+    coherent += looks_coherent(rays.data(), {first, 0, 8, 1}, size);
+  }
+  const std::size_t row = 2 * coherent >= kSamples ? find_row(rays, size) : 0;
+  return {row, row == 0 ? kChunk : 8 * row * std::max<std::size_t>(1, kChunk / (8 * row))};
+}
+
+void trace_batch(const BatchMethods& methods, const layouts::Layout& layout, Traversal traversal, std::size_t row,
+                 std::span<const Ray> rays, const BatchAnswers& answers) {
+  ChunkTracer tracer(methods, layout, rays, answers);
+  if (!methods.has_batch) return tracer.single(rays.data(), rays.size(), answers);
+  if (traversal == Traversal::sorted) return trace_sorted(methods, layout, rays, answers);
+  if (traversal == Traversal::interleaved) {
+    (void)tracer.in_flight(rays.data(), rays.size(), answers);
+    return;
+  }
+  tracer.tiles(row, traversal == Traversal::coherent);
+}
+
+}  // namespace boxwood::queries

@@ -1,0 +1,33 @@
+// What the batch engine asks of the kernels of one layout, mode and instruction set.
+#pragma once
+
+#include "boxwood/queries.h"
+
+namespace boxwood::queries {
+
+/// Most rays in a packet.
+inline constexpr std::size_t kPacketRays = 64;
+
+/// The rays of one packet in the caller's array: `rows` rows of `columns` neighbours, their beginnings `stride` apart.
+/// One row of up to 64 rays, or up to 8 rows of up to 8.
+struct Tile {
+  std::size_t first = 0, stride = 0;
+  std::uint32_t columns = 0, rows = 1;
+};
+
+struct BatchKernels {
+  /// One packet. False where its rays go too different ways: then the answers are still to be found.
+  bool (*packet_closest)(const layouts::Layout&, const Ray* rays, const Tile&, Hit* hits, Vec3* normals);
+  bool (*packet_any)(const layouts::Layout&, const Ray* rays, const Tile&, std::uint8_t* occluded);
+  /// Many rays in flight. Gives the number of steps (entries popped) that all rays took together.
+  std::size_t (*interleaved_closest)(const layouts::Layout&, const Ray* rays, std::size_t count, Hit* hits,
+                                     Vec3* normals);
+  std::size_t (*interleaved_any)(const layouts::Layout&, const Ray* rays, std::size_t count, std::uint8_t* occluded);
+  /// Whether `interleaved` is more than a loop over single rays on this instruction set.
+  bool interleaves = false;
+};
+
+BatchKernels wide8_batch_kernels(Mode mode, std::int64_t target);
+BatchKernels wide8_quads_batch_kernels(Mode mode, std::int64_t target);
+
+}  // namespace boxwood::queries

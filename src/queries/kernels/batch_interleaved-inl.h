@@ -1,0 +1,272 @@
+// Many rays in flight, in phases: an incoherent ray spends most of its time on mispredicted branches (how many children
+// were hit, node or leaf, still near enough or not) and on waiting for memory. Here all rays in flight take one step
+// together, and what kind of step it is is sorted out by writing their numbers to lists without a branch:
+//
+//   1. each ray pops an entry and goes onto the list of nodes, of leaves or of finished rays; an entry that lies behind
+//      the ray's best hit is dropped by going onto none; what was popped is prefetched
+//   2. nodes: all eight children are tested, sorted by entry distance with a sorting network and stored on the ray's
+//      stack, those that were missed above its new end
+//   3. leaves: one block of triangles each; further blocks of the leaf go back onto the stack
+//   4. finished rays report and hand their place to the next one
+//
+// Entry distances lose their three lowest bits to the lane's number. They become smaller by that, so an entry is never
+// dropped too early. Any-hit rays need no distances: their children stand in the order in which to try them.
+#if defined(BOXWOOD_QUERIES_KERNELS_BATCH_INTERLEAVED_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef BOXWOOD_QUERIES_KERNELS_BATCH_INTERLEAVED_INL_H_
+#undef BOXWOOD_QUERIES_KERNELS_BATCH_INTERLEAVED_INL_H_
+#else
+#define BOXWOOD_QUERIES_KERNELS_BATCH_INTERLEAVED_INL_H_
+#endif
+
+#include <hwy/cache_control.h>
+
+#include <array>
+
+#include "queries/kernels/batch.h"
+#include "queries/kernels/wide-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace boxwood::queries::HWY_NAMESPACE {
+
+using EightTag = hn::CappedTag<float, 8>;
+/// The sorting network is one of eight lanes.
+inline constexpr bool kHasEightLanes = HWY_MAX_BYTES >= 32;
+
+#if HWY_MAX_BYTES >= 32
+/// For each set of lanes its members, the last one first.
+inline constexpr auto kBackwards = [] {
+  std::array<std::array<std::uint8_t, 8>, 256> table{};
+  for (unsigned bits = 0; bits < 256; ++bits)
+    for (unsigned lane = 8, place = 0; lane-- > 0;)
+      if (bits >> lane & 1) table[bits][place++] = static_cast<std::uint8_t>(lane);
+  return table;
+}();
+
+/// Sorts eight keys, largest first: a bitonic network of six layers.
+template <class VI>
+HWY_INLINE VI sort_descending(VI v) {
+  const hn::DFromV<VI> di;
+  const hn::RepartitionToWide<decltype(di)> wide;
+  const auto by_one = [&](VI x) HWY_ATTR {
+    const auto other = hn::Shuffle2301(x);
+    return hn::OddEven(hn::Min(x, other), hn::Max(x, other));
+  };
+  const auto by_pairs = [&](VI x, VI other) HWY_ATTR {
+    return hn::BitCast(di, hn::OddEven(hn::BitCast(wide, hn::Min(x, other)), hn::BitCast(wide, hn::Max(x, other))));
+  };
+  v = by_one(v);
+  v = by_one(by_pairs(v, hn::Shuffle0123(v)));
+  const auto turned = hn::Reverse(di, v);
+  v = hn::ConcatUpperLower(di, hn::Min(v, turned), hn::Max(v, turned));
+  return by_one(by_pairs(v, hn::Shuffle1032(v)));
+}
+
+template <class Leaf, bool kRobust, bool kAny>
+class Interleaved {
+ public:
+  static constexpr std::uint32_t kFlights = 16;
+
+  Interleaved(const Layout& layout, const Ray* rays, std::size_t count, Hit* hits, Vec3* normals,
+              std::uint8_t* occluded)
+      : layout_(layout),
+        nodes_(reinterpret_cast<const WideNode<8>*>(layout.nodes.data())),
+        blocks_(reinterpret_cast<const Block*>(layout.triangles.data())),
+        rays_(rays),
+        count_(count),
+        hits_(hits),
+        normals_(normals),
+        occluded_(occluded),
+        depth_((layout.max_stack + 2 * 8 + 15) / 16 * 16),
+        memory_(std::make_unique_for_overwrite<std::uint32_t[]>(2 * depth_ * kFlights)) {}
+
+  /// Gives the number of entries popped.
+  std::size_t run() {
+    std::size_t steps = 0;
+    std::uint32_t active[kFlights], active_count = 0;
+    for (std::uint32_t slot = 0; slot < kFlights; ++slot) {
+      words_[slot] = memory_.get() + 2 * slot * depth_;
+      distances_[slot] = reinterpret_cast<float*>(words_[slot] + depth_);
+      active[active_count] = slot;
+      active_count += start(slot);
+    }
+    std::uint32_t nodes[kFlights], leaves[kFlights], finished[kFlights];
+    while (active_count) {
+      steps += active_count;
+      std::uint32_t node_count = 0, leaf_count = 0, finished_count = 0;
+      for (std::uint32_t i = 0; i < active_count; ++i) {
+        const std::uint32_t slot = active[i];
+        const std::uint32_t place = --top_[slot];
+        const std::uint32_t word = words_[slot][place];
+        const bool is_live = kAny || distances_[slot][place] <= flights_[slot].best.t;
+        const bool is_leaf = word >> 31, is_end = word == layouts::kNoRoot;
+        word_[slot] = word;
+        nodes[node_count] = slot, node_count += !is_leaf & is_live;
+        leaves[leaf_count] = slot, leaf_count += is_leaf & !is_end & is_live;
+        finished[finished_count] = slot, finished_count += is_end;
+        prefetch(word, is_leaf);
+      }
+      for (std::uint32_t i = 0; i < node_count; ++i) visit_node(nodes[i]);
+      for (std::uint32_t i = 0; i < leaf_count; ++i) visit_leaf(leaves[i]);
+      if (!finished_count) continue;
+      bool shrinks = false;
+      for (std::uint32_t i = 0; i < finished_count; ++i) {
+        report(finished[i]);
+        shrinks |= !start(finished[i]);
+      }
+      if (!shrinks) continue;
+      const std::uint32_t before = active_count;
+      active_count = 0;
+      for (std::uint32_t i = 0; i < before; ++i) {
+        const std::uint32_t slot = active[i];
+        active[active_count] = slot, active_count += top_[slot] != 0;
+      }
+    }
+    return steps;
+  }
+
+ private:
+  using Block = typename Leaf::Block;
+  struct alignas(64) Flight {
+    RaySetup setup;
+    Best<Leaf> best;
+    std::size_t ray;
+  };
+
+  HWY_INLINE void prefetch(std::uint32_t word, bool is_leaf) const {
+    // Numbers, since one of the two is no address of anything.
+    const std::uintptr_t node = reinterpret_cast<std::uintptr_t>(nodes_) + std::uintptr_t{word} * sizeof(WideNode<8>);
+    const std::uintptr_t block =
+        reinterpret_cast<std::uintptr_t>(blocks_) + std::uintptr_t{layouts::leaf_first(word)} * sizeof(Block);
+    const auto* address = reinterpret_cast<const char*>(is_leaf ? block : node);
+    for (int line = 0; line < 4; ++line) hwy::Prefetch(address + 64 * line);
+  }
+
+  /// Gives the next ray to a place; false when there is none. Rays that can hit nothing are answered here.
+  HWY_INLINE bool start(std::uint32_t slot) {
+    Flight& flight = flights_[slot];
+    for (; next_ < count_; ++next_) {
+      if (layout_.root == layouts::kNoRoot || !set_up(rays_[next_], layout_.bounds, flight.setup)) {
+        miss(next_);
+        continue;
+      }
+      flight.best = {};
+      flight.best.t = flight.setup.tmax;
+      flight.ray = next_++;
+      words_[slot][0] = layouts::kNoRoot, words_[slot][1] = layout_.root;
+      distances_[slot][0] = distances_[slot][1] = 0;
+      top_[slot] = 2;
+      return true;
+    }
+    top_[slot] = 0;
+    return false;
+  }
+
+  HWY_INLINE void miss(std::size_t ray) {
+    if constexpr (kAny) {
+      occluded_[ray] = 0;
+    } else {
+      hits_[ray] = {};
+      if (normals_) normals_[ray] = {};
+    }
+  }
+
+  HWY_INLINE void report(std::uint32_t slot) {
+    const Flight& flight = flights_[slot];
+    if constexpr (kAny) {
+      occluded_[flight.ray] = flight.best.block != nullptr;
+    } else {
+      if (!flight.best.block) return miss(flight.ray);
+      hits_[flight.ray] = make_hit(flight.setup, flight.best);
+      if (normals_) normals_[flight.ray] = triangle_of<Leaf>(*flight.best.block, flight.best.lane).normal();
+    }
+  }
+
+  HWY_INLINE void visit_node(std::uint32_t slot) {
+    const EightTag d;
+    const hn::RebindToSigned<EightTag> di;
+    const hn::RebindToUnsigned<EightTag> du;
+    const RaySetup& ray = flights_[slot].setup;
+    const WideNode<8>& node = nodes_[word_[slot]];
+    const auto entry = [&](int axis) HWY_ATTR {
+      return hn::MulAdd(hn::Load(d, node.planes[ray.entry_plane[axis]]), hn::Set(d, ray.reciprocal[axis]),
+                        hn::Set(d, ray.entry_add[axis]));
+    };
+    const auto exit = [&](int axis) HWY_ATTR {
+      return hn::MulAdd(hn::Load(d, node.planes[ray.exit_plane[axis]]), hn::Set(d, ray.reciprocal[axis]),
+                        hn::Set(d, ray.exit_add[axis]));
+    };
+    const auto near = hn::Max(hn::Max(entry(0), entry(1)), hn::Max(entry(2), hn::Set(d, ray.tmin)));
+    const auto far = hn::Min(hn::Min(exit(0), exit(1)), hn::Min(exit(2), hn::Set(d, flights_[slot].best.t)));
+    const auto hit = hn::Le(near, far);
+    const auto children = hn::Load(du, node.child);
+    std::uint32_t* const words = words_[slot] + top_[slot];
+    if constexpr (kAny) {
+      const std::uint64_t bits = mask_bits(d, hit);
+      const hn::Rebind<std::uint8_t, decltype(du)> bytes;
+      const auto lanes = hn::PromoteTo(du, hn::Load(bytes, kBackwards[bits].data()));
+      hn::StoreU(hn::TableLookupLanes(children, hn::IndicesFromVec(du, lanes)), du, words);
+      top_[slot] += static_cast<std::uint32_t>(std::popcount(bits));
+    } else {
+      const auto lanes = hn::Iota(di, 0), low_bits = hn::Set(di, 7);
+      const auto keys = hn::Or(hn::AndNot(low_bits, hn::BitCast(di, near)), lanes);
+      const auto sorted = sort_descending(hn::IfThenElse(hn::RebindMask(di, hit), keys, hn::Set(di, -1)));
+      hn::StoreU(hn::TableLookupLanes(children, hn::IndicesFromVec(du, hn::BitCast(du, hn::And(sorted, low_bits)))), du,
+                 words);
+      hn::StoreU(hn::BitCast(d, hn::AndNot(low_bits, sorted)), d, distances_[slot] + top_[slot]);
+      top_[slot] += static_cast<std::uint32_t>(hn::CountTrue(d, hit));
+    }
+  }
+
+  HWY_INLINE void visit_leaf(std::uint32_t slot) {
+    Flight& flight = flights_[slot];
+    const std::uint32_t word = word_[slot], first = layouts::leaf_first(word), left = layouts::leaf_blocks(word) - 1;
+    // The entry is still where it was popped, with its distance; the word stands for the blocks behind this one.
+    words_[slot][top_[slot]] = layouts::kLeafBit | (left - 1) << 28 | (first + 1);
+    top_[slot] += left != 0;
+    if constexpr (kRobust)
+      Leaf::template robust<kAny>(blocks_[first], flight.setup, flight.best);
+    else
+      Leaf::fast(blocks_[first], flight.setup, flight.best);
+    if constexpr (kAny) top_[slot] = flight.best.block ? 1 : top_[slot];
+  }
+
+  const Layout& layout_;
+  const WideNode<8>* nodes_;
+  const Block* blocks_;
+  const Ray* rays_;
+  std::size_t count_, next_ = 0;
+  Hit* hits_;
+  Vec3* normals_;
+  std::uint8_t* occluded_;
+  std::size_t depth_;
+  std::unique_ptr<std::uint32_t[]> memory_;
+  std::uint32_t* words_[kFlights];
+  float* distances_[kFlights];
+  std::uint32_t top_[kFlights], word_[kFlights];
+  Flight flights_[kFlights];
+};
+
+#endif  // eight lanes
+
+template <int W, class Leaf, bool kRobust>
+std::size_t interleaved_closest(const Layout& layout, const Ray* rays, std::size_t count, Hit* hits, Vec3* normals) {
+#if HWY_MAX_BYTES >= 32
+  if constexpr (W == 8) return Interleaved<Leaf, kRobust, false>(layout, rays, count, hits, normals, nullptr).run();
+#endif
+  closest<W, Leaf, kRobust, false>(layout, rays, count, hits, normals, nullptr);
+  return 0;
+}
+
+template <int W, class Leaf, bool kRobust>
+std::size_t interleaved_any(const Layout& layout, const Ray* rays, std::size_t count, std::uint8_t* occluded) {
+#if HWY_MAX_BYTES >= 32
+  if constexpr (W == 8) return Interleaved<Leaf, kRobust, true>(layout, rays, count, nullptr, nullptr, occluded).run();
+#endif
+  any<W, Leaf, kRobust, false>(layout, rays, count, occluded, nullptr);
+  return 0;
+}
+
+}  // namespace boxwood::queries::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard
