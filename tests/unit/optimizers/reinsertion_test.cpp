@@ -227,7 +227,7 @@ TEST(Reinsertion, another_price_makes_another_tree) {
 }
 
 TEST(Reinsertion, same_bits_on_every_executor) {
-  const tree::BinaryTree tree = test::random_tree(9, 1200, 2, 0.3f);
+  const tree::BinaryTree tree = test::random_tree(9, 700, 2, 0.3f);
   const std::uint64_t expected = tree::hash(reinserted(tree));
   for (const int threads : {1, 2, 7}) {
     ThreadExecutor executor(threads);
