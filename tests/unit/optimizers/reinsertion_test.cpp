@@ -187,7 +187,7 @@ TEST(Reinsertion, a_leaf_crosses_the_top_split) {
 TEST(Reinsertion, trees_stay_valid_keep_their_leaves_and_get_cheaper) {
   for (std::uint32_t seed = 20; seed < 28; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    const tree::BinaryTree tree = test::random_tree(seed, 200 * (seed - 19), 3, 0.5f);
+    const tree::BinaryTree tree = test::random_tree(seed, 60 * (seed - 19), 3, 0.5f);
     ReinsertionReport report;
     const tree::BinaryTree better = reinserted(tree, {.passes = 20, .share = 1, .least_gain = 0}, &report);
     EXPECT_TRUE(validate(better)) << validate(better).error().message;
@@ -198,12 +198,15 @@ TEST(Reinsertion, trees_stay_valid_keep_their_leaves_and_get_cheaper) {
   }
 }
 
-TEST(Reinsertion, no_move_is_left_once_it_has_converged) {
-  const tree::BinaryTree tree = test::random_tree(77, 24, 1);
-  const tree::BinaryTree better = reinserted(tree, {.passes = 1000, .share = 1, .least_gain = 0});
-  const double end = price(better);
-  for (std::size_t node = 1; node < better.nodes.size(); ++node)
-    EXPECT_GE(best_by_trial(better, int(node)), end * (1 - 1e-4)) << "node " << node;
+TEST(Reinsertion, more_passes_are_never_dearer) {
+  const tree::BinaryTree tree = test::random_tree(77, 300, 1, 0.5f);
+  double last = price(tree);
+  for (int passes = 0; passes < 12; ++passes) {
+    const double now = price(reinserted(tree, {.passes = passes, .share = 1, .least_gain = 0}));
+    EXPECT_LE(now, last * (1 + 1e-6)) << passes << " passes";
+    last = now;
+  }
+  EXPECT_LT(last, 0.5 * price(tree));
 }
 
 TEST(Reinsertion, another_price_makes_another_tree) {
@@ -224,7 +227,7 @@ TEST(Reinsertion, another_price_makes_another_tree) {
 }
 
 TEST(Reinsertion, same_bits_on_every_executor) {
-  const tree::BinaryTree tree = test::random_tree(9, 5000, 2, 0.3f);
+  const tree::BinaryTree tree = test::random_tree(9, 700, 2, 0.3f);
   const std::uint64_t expected = tree::hash(reinserted(tree));
   for (const int threads : {1, 2, 7}) {
     ThreadExecutor executor(threads);
@@ -268,7 +271,7 @@ TEST(Reinsertion, huge_and_tiny_coordinates) {
 }
 
 TEST(Reinsertion, a_chain_of_many_levels) {
-  const tree::BinaryTree tree = test::chain_tree(20000, 2);
+  const tree::BinaryTree tree = test::chain_tree(5000, 2);
   const tree::BinaryTree better = reinserted(tree, {.passes = 2, .share = 1});
   EXPECT_TRUE(validate(better)) << validate(better).error().message;
   EXPECT_EQ(leaves(better), leaves(tree));
