@@ -71,9 +71,11 @@ Status run_ablate(Options& options) {
   const auto size = parse_size(options.size);
   if (!size) return size.error();
   std::tie(options.plan.width, options.plan.height) = *size;
-  const auto build = options.pipeline.build_options();
-  if (!build) return build.error();
-  AccelOptions whole{.build = *build, .presplit = options.pipeline.presplit, .layout = options.pipeline.layout};
+  if (const auto plan = options.pipeline.plan(); !plan) return plan.error();
+  AccelOptions whole{.build = {options.pipeline.builder, *parse_settings(options.pipeline.settings)},
+                     .presplit = options.pipeline.presplit,
+                     .optimizer = options.pipeline.optimizer,
+                     .layout = options.pipeline.layout};
   if (const auto accel = Accel::build(MeshView{}, whole); !accel) return accel.error();
   const auto isa = queries::choose_isa();
   if (!isa) return isa.error();
@@ -114,7 +116,7 @@ Status run_ablate(Options& options) {
 
 void add_ablate_command(CLI::App& program, Run& run) {
   auto options = std::make_shared<Options>();
-  options->pipeline.builder = "sbvh";
+  options->pipeline.builder = "best";
   CLI::App& command = *program.add_subcommand("ablate", "What each technique is worth, by leaving it out alone");
   command.add_option("INPUT", options->inputs, kInputHelp)->required()->type_name("");
   options->pipeline.add_to(command);

@@ -135,7 +135,7 @@ Status run_duel(Options& options) {
 void add_duel_command(CLI::App& program, Run& run) {
   auto options = std::make_shared<Options>();
   duel::Plan& plan = options->plan;
-  plan.fast = "hlbvh", plan.balanced = "binned-sah", plan.best = "sbvh";
+  plan.fast = "fast", plan.balanced = "balanced", plan.best = "best";
   plan.layout = AccelOptions{}.layout, plan.most_judged = 100;
   CLI::App& command = *program.add_subcommand("duel", "Is it faster than Embree on this machine?");
   command.add_option("INPUT", options->inputs, kInputHelp)->type_name("");

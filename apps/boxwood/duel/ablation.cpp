@@ -25,12 +25,28 @@ bool differs(std::string& value, const char* without) {
   return true;
 }
 
+bool leave_out_presplit(AccelOptions& options) {
+  const auto plan = plan_tree(options.build, options.presplit, options.optimizer);
+  return plan && !plan->presplit.is_none() && differs(options.presplit, "none");
+}
+
+bool leave_out_optimizer(AccelOptions& options) {
+  const auto plan = plan_tree(options.build, options.presplit, options.optimizer);
+  return plan && plan->optimizer.text() != "none" && differs(options.optimizer, "none");
+}
+
+/// Overlaps never exceed the root's area, so with alpha = 1 no plane is tried.
+bool leave_out_spatial_splits(AccelOptions& options) {
+  const auto plan = plan_tree(options.build, options.presplit, options.optimizer);
+  return plan && plan->build.builder == "sbvh" && differs(options.build.settings["alpha"], "1");
+}
+
 const std::vector<Technique>& techniques() {
   const auto nothing = [](AccelOptions&) { return true; };
   static const std::vector<Technique> list{
-      {"pre-split", [](AccelOptions& o) { return differs(o.presplit, "none"); }},
-      {"spatial splits",
-       [](AccelOptions& o) { return o.build.builder == "sbvh" && differs(o.build.settings["alpha"], "1"); }},
+      {"pre-split", leave_out_presplit},
+      {"spatial splits", leave_out_spatial_splits},
+      {"reinsertion", leave_out_optimizer},
       {"eight children a node", [](AccelOptions& o) { return o.layout == "wide8" && differs(o.layout, "wide4"); }},
       {"quads", [](AccelOptions& o) { return o.layout == "wide8-quads" && differs(o.layout, "wide8"); }},
       {"wide nodes and blocks", [](AccelOptions& o) { return differs(o.layout, "linear"); }},
