@@ -106,8 +106,9 @@ Status run_ablate(Options& options) {
       if (Status status = io::write_file(path, text); !status) return status;
   }
   Json report = session.report(*isa);
-  report["options"] = {{"builder", whole.build.builder}, {"presplit", whole.presplit},    {"layout", whole.layout},
-                       {"size", options.size},           {"repeat", options.plan.repeat}, {"seed", options.plan.seed}};
+  report["options"] = {{"builder", whole.build.builder}, {"presplit", whole.presplit}, {"optimizer", whole.optimizer},
+                       {"layout", whole.layout},         {"size", options.size},       {"repeat", options.plan.repeat},
+                       {"seed", options.plan.seed}};
   report["rows"] = rows;
   return session.finish(report);
 }

@@ -48,6 +48,7 @@ std::string markdown(const Options& options, const std::vector<duel::SceneResult
                                  day, session.environment_line(isa),
                                  options.plan.embree.empty() ? "none" : options.plan.embree, std::ceil(seconds / 60));
   for (const duel::ReportTable& table : duel::report_tables(results)) {
+    if (table.is_detail) continue;
     text += fmt::format("\n**{}**\n\n{}", table.title, table.table.markdown());
     for (const std::string& note : table.notes) text += "\n" + note + "\n";
   }

@@ -13,7 +13,7 @@
 namespace boxwood::program {
 namespace {
 
-constexpr double kShortestPass = 0.02;     // seconds
+constexpr double kShortestPass = 0.01;     // seconds
 constexpr double kShareOfOne = 0.98;       // of one processor's time
 constexpr double kShareOfSeveral = 0.90;   // work ends unevenly
 constexpr double kMostStolen = 0.03;       // of the wall time

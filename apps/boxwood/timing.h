@@ -27,7 +27,7 @@ struct TimedCell {
   std::size_t disturbed = 0;         ///< rounds whose best pass still lacked a processor
 };
 
-/// All cells once in each round, every other round backwards. A pass runs a cell until it has lasted 20 ms. It is made
+/// All cells once in each round, every other round backwards. A pass runs a cell until it has lasted 10 ms. It is made
 /// again, up to three times, when the process got less than 98 % of one processor's time (several: 90 % of theirs), or
 /// the hypervisor took more than 3 % (steal in /proc/stat). `progress`, if any, is told the share that is done.
 Status measure_in_turns(std::vector<TimedCell>& cells, int rounds, const std::function<void(double)>& progress = {});

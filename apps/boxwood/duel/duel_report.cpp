@@ -17,7 +17,7 @@ std::string number(const Contest& contest, double value) {
   return fmt::format("{:.{}f}", value, contest.is_bytes ? 1 : 2);
 }
 
-ReportTable target_table(const std::vector<Summary>& summaries) {
+ReportTable target_table(const std::vector<Cell>& all, const std::vector<Summary>& summaries) {
   ReportTable report{"Targets: geometric means over scenes and rays, above 1 where ours is better", {}};
   report.table.column("contest", Align::left);
   for (const char* head : {"at least", "aim", "ours", "rounds", "worst"}) report.table.column(head);
@@ -38,6 +38,11 @@ ReportTable target_table(const std::vector<Summary>& summaries) {
       "rounds: lowest and highest of the same mean over one round each. Embree is the faster of MEDIUM and HIGH in "
       "each "
       "cell. Bytes: less is better.");
+  std::size_t repeated = 0, disturbed = 0;
+  for (const Cell& cell : all) repeated += cell.repeated, disturbed += cell.disturbed;
+  report.notes.push_back(
+      fmt::format("{} passes were made again because the process lacked a processor; {} lacked it to the last.",
+                  repeated, disturbed));
   return report;
 }
 
@@ -63,7 +68,6 @@ ReportTable speed_table(const std::vector<SceneResult>& results) {
   ReportTable report{"Speeds: million rays or triangles a second, bytes per triangle; ours : theirs (ratio)", {}};
   for (const char* head : {"scene", "contest", "rays", "ours", "theirs"}) report.table.column(head, Align::left);
   for (const char* head : {"ours", "theirs", "ratio", "spread"}) report.table.column(head);
-  std::size_t repeated = 0, disturbed = 0;
   for (const SceneResult& result : results)
     for (const Cell& cell : result.cells) {
       const Spread spread = spread_of(cell.values);
@@ -74,12 +78,7 @@ ReportTable speed_table(const std::vector<SceneResult>& results) {
                         has_rival ? fmt::format("{:.2f}", cell.rival_value) : "-",
                         has_ratio ? fmt::format("{:.2f}", spread.median) : "-",
                         has_ratio ? fmt::format("{:.2f} to {:.2f}", spread.lowest, spread.highest) : "-"});
-      repeated += cell.repeated, disturbed += cell.disturbed;
     }
-  report.notes.push_back(
-      fmt::format("{} passes were made again because the process lacked a processor; {} lacked it to "
-                  "the last.",
-                  repeated, disturbed));
   return report;
 }
 
@@ -87,20 +86,24 @@ ReportTable agreement_table(const std::vector<SceneResult>& results) {
   ReportTable report{"Agreement: robust mode against Embree's ROBUST, brute force in double precision as the judge",
                      {}};
   report.table.column("scene", Align::left);
-  report.table.column("rays", Align::left);
-  for (const char* head : {"count", "hits", "differ", "judged", "ours right", "both right", "border", "ours wrong"})
+  for (const char* head : {"rays", "hits", "differ", "judged", "ours right", "both right", "border", "ours wrong"})
     report.table.column(head);
   std::size_t wrong = 0;
-  for (const SceneResult& result : results)
+  for (const SceneResult& result : results) {
+    rivals::Verdicts sum;
     for (const Agreement& a : result.agreements) {
       const rivals::Verdicts& v = a.verdicts;
-      std::vector<std::string> cells{a.scene, std::string(a.rays) + (a.asks_any ? ", any" : "")};
-      for (const std::size_t count : {v.rays, v.hits, v.differences, v.judged, v.ours_right, v.both, v.border, v.wrong})
-        cells.push_back(with_thousands(count));
-      report.table.row(std::move(cells));
-      wrong += v.wrong;
+      sum.rays += v.rays, sum.hits += v.hits, sum.differences += v.differences, sum.judged += v.judged;
+      sum.ours_right += v.ours_right, sum.both += v.both, sum.border += v.border, sum.wrong += v.wrong;
       if (v.wrong) report.notes.push_back(fmt::format("{} {}, {}", a.scene, a.rays, v.first_wrong));
     }
+    std::vector<std::string> cells{result.scene};
+    for (const std::size_t count :
+         {sum.rays, sum.hits, sum.differences, sum.judged, sum.ours_right, sum.both, sum.border, sum.wrong})
+      cells.push_back(with_thousands(count));
+    report.table.row(std::move(cells));
+    wrong += sum.wrong;
+  }
   report.notes.push_back(wrong ? fmt::format("{} answers of ours contradict brute force.", wrong)
                                : "No answer of ours contradicts a clear verdict of brute force.");
   return report;
@@ -111,10 +114,12 @@ ReportTable agreement_table(const std::vector<SceneResult>& results) {
 std::vector<ReportTable> report_tables(const std::vector<SceneResult>& results) {
   const std::vector<Cell> cells = all_cells(results);
   const std::vector<Summary> summaries = summarise(cells);
-  std::vector<ReportTable> tables{target_table(summaries), scene_table(results, summaries), speed_table(results)};
+  std::vector<ReportTable> tables{target_table(cells, summaries), scene_table(results, summaries)};
   bool has_agreement = false;
   for (const SceneResult& result : results) has_agreement |= !result.agreements.empty();
   if (has_agreement) tables.push_back(agreement_table(results));
+  tables.push_back(speed_table(results));
+  tables.back().is_detail = true;
   return tables;
 }
 

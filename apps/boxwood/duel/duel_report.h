@@ -14,9 +14,10 @@ struct ReportTable {
   std::string title;
   Table table;
   std::vector<std::string> notes = {};
+  bool is_detail = false;  ///< too long for a document
 };
 
-/// Targets, scenes, agreement: the tables that have anything to show.
+/// Targets, scenes, agreement, speeds: the tables that have anything to show.
 std::vector<ReportTable> report_tables(const std::vector<SceneResult>& results);
 
 Json cells_json(const std::vector<SceneResult>& results);
