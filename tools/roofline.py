@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """What a node visit and a triangle test cost, in time and in instructions, as a table of Markdown.
 
-    roofline.py PROGRAM [--input scene:organic,triangles=250000] [--layout wide8] [--isa avx2] [--builders a,b,...]
+    roofline.py PROGRAM [INPUT...] [--layout wide8] [--isa avx2] [--builders a,b,...]
 
-Random rays through the trees of several builders visit different numbers of nodes and test different numbers of
-triangles; least squares over the builders split the cost of a ray into that of its start, of a node and of a triangle.
+Random rays through the trees of several builders over several scenes visit different numbers of nodes and test different
+numbers of triangles; least squares over all of them split the cost of a ray into that of its start, of a node and of a triangle.
 Time is `boxwood bench`'s, with one thread. Instructions are callgrind's, of `boxwood trace` with two numbers of rays, the
 difference of which is what the rays alone take (reading and writing a ray included). The clock is that of a chain of
 additions, which take a cycle each.
@@ -26,7 +26,7 @@ CLOCK = r"""
 #include <time.h>
 int main() {
   struct timespec a, b;
-  unsigned long x = 1, n = 400000000;
+  unsigned long x = 1, n = 40000000;
   clock_gettime(CLOCK_MONOTONIC, &a);
   for (unsigned long i = 0; i < n; i += 8)
     __asm__ volatile("add $1, %0\nadd $1, %0\nadd $1, %0\nadd $1, %0\nadd $1, %0\nadd $1, %0\nadd $1, %0\nadd $1, %0" : "+r"(x));
@@ -34,6 +34,10 @@ int main() {
   printf("%f\n", n / ((b.tv_sec - a.tv_sec) * 1e9 + (b.tv_nsec - a.tv_nsec)));
 }
 """
+
+
+# Highway's library asks for the clock's resolution by an instruction that valgrind does not know.
+NO_TIMER = "unsigned long _ZN3hwy8platform15TimerResolutionEv(void) { return 1; }\n"
 
 
 def run(command, environment):
@@ -47,7 +51,13 @@ def clock_of(folder):
     """Cycles in a nanosecond."""
     (folder / "clock.c").write_text(CLOCK)
     run(["cc", "-O1", folder / "clock.c", "-o", folder / "clock"], None)
-    return max(float(run([folder / "clock"], None).stdout) for _ in range(5))
+    return max(float(run([folder / "clock"], None).stdout) for _ in range(30))
+
+
+def environment_for_valgrind(folder, environment):
+    (folder / "timer.c").write_text(NO_TIMER)
+    run(["cc", "-shared", "-fPIC", folder / "timer.c", "-o", folder / "timer.so"], None)
+    return {**environment, "LD_PRELOAD": str(folder / "timer.so")}
 
 
 def write_rays(path, bounds, count):
@@ -62,9 +72,9 @@ def write_rays(path, bounds, count):
     path.write_bytes(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header.encode() + bytes(rays))
 
 
-def instructions(program, options, builder, rays, folder, environment):
+def instructions(program, options, text, builder, rays, folder, environment):
     command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder / 'callgrind.out'}", program, "trace",
-               options.input, "--rays", rays, "-o", folder / "hits.npy", "--builder", builder, "--layout", options.layout,
+               text, "--rays", rays, "-o", folder / "hits.npy", "--builder", builder, "--layout", options.layout,
                "--mode", "fast", "--threads", "1", "--quiet"]
     return int(re.search(r"Collected : (\d+)", run(command, environment).stderr).group(1))
 
@@ -84,40 +94,49 @@ def least_squares(rows, values):
     return [matrix[i][n] / matrix[i][i] for i in range(n)]
 
 
+def measure(text, options, folder, clock, environment, for_valgrind):
+    """Scene, builder, nodes, triangles, cycles and instructions a ray, for each builder."""
+    bounds = json.loads(run([options.program, "info", text, "--json", "-"], None).stdout)["bounds"]
+    report = json.loads(run([options.program, "bench", text, "--builders", options.builders, "--layouts", options.layout,
+                             "--modes", "fast", "--rays", "random", "--random-rays", 200000, "--size", "64x64",
+                             "--repeat", 5, "--threads", 1, "--json", "-"], environment).stdout)
+    write_rays(folder / "few.npy", bounds, options.rays)
+    write_rays(folder / "many.npy", bounds, 2 * options.rays)
+    for row in report["rows"]:
+        few, many = (instructions(options.program, options, text, row["builder"], folder / f"{which}.npy", folder,
+                                  for_valgrind) for which in ("few", "many"))
+        yield (row["scene"], row["builder"], row["nodes_per_ray"], row["primitives_per_ray"],
+               clock * 1e3 / row["mrays"]["median"], (many - few) / options.rays)
+
+
 def main():
     parser = argparse.ArgumentParser(description="Cost of a node visit and of a triangle test")
     parser.add_argument("program")
-    parser.add_argument("--input", default="scene:organic,triangles=60000")
+    parser.add_argument("inputs", nargs="*")
     parser.add_argument("--layout", default="wide8")
     parser.add_argument("--isa", default="avx2")
-    parser.add_argument("--builders", default="binned-sah,sweep-sah,lbvh,middle,sbvh,equal-counts")
+    parser.add_argument("--builders", default="binned-sah,lbvh,equal-counts")
     parser.add_argument("--rays", type=int, default=10000)
     options = parser.parse_args()
+    inputs = options.inputs or [f"scene:{scene},triangles=50000" for scene in ("organic", "atrium", "foliage", "city")]
     environment = {**os.environ, "BOXWOOD_ISA": options.isa}
+    lines = []
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         clock = clock_of(folder)
-        bounds = json.loads(run([options.program, "info", options.input, "--json", "-"], None).stdout)["bounds"]
-        report = json.loads(run([options.program, "bench", options.input, "--builders", options.builders, "--layouts",
-                                 options.layout, "--modes", "fast", "--rays", "random", "--random-rays", 200000, "--size",
-                                 "64x64", "--repeat", 5, "--threads", 1, "--json", "-"], environment).stdout)
-        write_rays(folder / "few.npy", bounds, options.rays)
-        write_rays(folder / "many.npy", bounds, 2 * options.rays)
-        lines = []
-        for row in report["rows"]:
-            few, many = (instructions(options.program, options, row["builder"], folder / f"{which}.npy", folder,
-                                      environment) for which in ("few", "many"))
-            lines.append((row["builder"], row["nodes_per_ray"], row["primitives_per_ray"],
-                          clock * 1e3 / row["mrays"]["median"], (many - few) / options.rays))
-    print(f"`{options.input}`, `{options.layout}`, {options.isa}, random rays, fast mode; {clock:.2f} cycles a nanosecond.\n")
-    print("| builder | nodes/ray | triangles/ray | cycles/ray | instructions/ray | instructions/cycle |")
-    print("| --- | ---: | ---: | ---: | ---: | ---: |")
-    for builder, nodes, triangles, cycles, count in lines:
-        print(f"| `{builder}` | {nodes:.2f} | {triangles:.2f} | {cycles:.0f} | {count:.0f} | {count / cycles:.2f} |")
-    rows = [(1, nodes, triangles) for _, nodes, triangles, _, _ in lines]
-    for what, values in (("cycles", [line[3] for line in lines]), ("instructions", [line[4] for line in lines])):
-        start, node, triangle = least_squares(rows, values)
-        print(f"| {what}, least squares | {node:.1f} a node | {triangle:.1f} a triangle | {start:.0f} a ray | | |")
+        for_valgrind = environment_for_valgrind(folder, environment)
+        for text in inputs:
+            lines += measure(text, options, folder, clock, environment, for_valgrind)
+    print(f"`{options.layout}`, {options.isa}, random rays, fast mode; {clock:.2f} cycles a nanosecond.\n")
+    print("| scene | builder | nodes/ray | triangles/ray | cycles/ray | instructions/ray | instructions/cycle |")
+    print("| --- | --- | ---: | ---: | ---: | ---: | ---: |")
+    for scene, builder, nodes, triangles, cycles, count in lines:
+        print(f"| {scene} | `{builder}` | {nodes:.2f} | {triangles:.2f} | {cycles:.0f} | {count:.0f} | "
+              f"{count / cycles:.2f} |")
+    rows = [(1, nodes, triangles) for _, _, nodes, triangles, _, _ in lines]
+    for what, column in (("cycles", 4), ("instructions", 5)):
+        start, node, triangle = least_squares(rows, [line[column] for line in lines])
+        print(f"| least squares | {what} | {node:.1f} a node | {triangle:.1f} a triangle | {start:.0f} a ray | | |")
 
 
 if __name__ == "__main__":

@@ -84,6 +84,8 @@ double percent(double part, double whole) {
 }
 
 Status build_all(std::vector<Variant>& variants, const Input& input, const std::shared_ptr<Executor>& executor) {
+  // The first build of a process pays for what the others find done.
+  if (const auto warm_up = build(variants[0].own, input, executor); !warm_up) return warm_up.error();
   for (Variant& variant : variants) {
     const HugePages pages(!variant.technique || variant.technique->huge_pages);
     const auto seconds = build(variant.own, input, executor);
