@@ -58,8 +58,9 @@ format:  ## rewrite all sources in the project's format (clang-format 14)
 format-check:  ## fail when a source is not in the project's format
 	@$(SOURCES) | xargs clang-format --dry-run --Werror
 
-tidy: build  ## clang-tidy over src and apps
-	tools/run_tidy.sh build/$(PRESET) $(JOBS)
+tidy: dependencies  ## clang-tidy over src and apps
+	$(call CONFIGURE,$(PRESET)) -B build/tidy -DBOXWOOD_PRECOMPILE=OFF
+	tools/run_tidy.sh build/tidy $(JOBS)
 
 asan tsan clang: dependencies  ## build and run the tests under a sanitizer; clang: under asan's, by clang++, warnings are errors
 	$(call CONFIGURE,$@)

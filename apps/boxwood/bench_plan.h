@@ -13,7 +13,7 @@ struct BenchOptions {
   CommonOptions common;
   InputOptions input_options;
   std::vector<std::string> inputs, presplits, optimizers;
-  std::vector<std::string> builders{"all"}, layouts{AccelOptions{}.layout}, modes{"robust"}, rivals, settings;
+  std::vector<std::string> builders{"all"}, layouts{queries::default_layout()}, modes{"robust"}, rivals, settings;
   std::vector<std::string> kinds{"primary", "random", "diffuse", "occlusion"}, traversals{"single"};
   std::string camera, cameras, size = "1024x1024", csv;
   int repeat = 3;

@@ -122,7 +122,7 @@ void add_correlate_command(CLI::App& program, Run& run) {
   options->layouts = {"linear"};
   CLI::App& command = *program.add_subcommand("correlate", "How well measures of trees predict what rays cost");
   options->add_to(command);
-  add_list(command, "-l,--layouts", options->layouts, "linear (the default), wide4, wide8, or all");
+  add_list(command, "-l,--layouts", options->layouts, "linear (the default), wide4, wide8, wide16, or all");
   command.footer(
       "\nExamples:\n"
       "  boxwood correlate bunny.ply --rays primary,random\n"

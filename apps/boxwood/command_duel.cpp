@@ -137,7 +137,7 @@ void add_duel_command(CLI::App& program, Run& run) {
   auto options = std::make_shared<Options>();
   duel::Plan& plan = options->plan;
   plan.fast = "fast", plan.balanced = "balanced", plan.best = "best";
-  plan.layout = AccelOptions{}.layout, plan.most_judged = 100;
+  plan.layout = queries::default_layout(), plan.most_judged = 100;
   CLI::App& command = *program.add_subcommand("duel", "Is it faster than Embree on this machine?");
   command.add_option("INPUT", options->inputs, kInputHelp)->type_name("");
   command.add_flag("--procedural", options->procedural,

@@ -149,11 +149,13 @@ void add_reproduce_command(CLI::App& program, Run& run) {
   options->common.add_to(command);
   std::string list = "\nTables:\n";
   for (const TableInfo& table : tables()) list += fmt::format("  {:<9} {}\n", table.id, table.summary);
-  command.footer(list +
-                 "\nExamples:\n"
-                 "  boxwood reproduce popov-4\n"
-                 "  boxwood reproduce popov-4 bunny.ply sponza.ply --csv cells.csv\n"
-                 "  boxwood reproduce all --markdown tables.md --charts images");
+  command.footer(
+      list +
+      "\nExamples:\n"
+      "  boxwood reproduce popov-4\n"
+      "  boxwood reproduce popov-4 bunny.ply sponza.ply --csv cells.csv\n"
+      "  boxwood reproduce all --markdown tables.md --charts images\n"
+      "  boxwood reproduce all bunny.ply sponza.ply --cameras cameras.json --size 384x384 --random-rays 131072");
   command.callback([options, &run] {
     if ((options->csv == "-") + (options->common.json == "-") + (options->markdown == "-") > 1)
       throw CLI::ValidationError("only one of --csv, --json and --markdown can go to standard output");

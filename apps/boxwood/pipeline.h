@@ -18,7 +18,7 @@ using Echo = std::vector<std::pair<std::string, std::string>>;
 struct PipelineOptions {
   std::string builder = AccelOptions{}.build.builder;
   std::vector<std::string> settings;  ///< key=value
-  std::string layout = AccelOptions{}.layout;
+  std::string layout = queries::default_layout();
   std::string presplit, optimizer;  ///< empty: the quality level's
 
   void add_to(CLI::App& command);

@@ -70,10 +70,10 @@ struct AccelOptions {
   builders::BuildOptions build = {.builder = "balanced"};  ///< id of a quality level or a builder, and settings
   std::string presplit = {};     ///< how to split references first: what refs::parse_presplit reads; empty: the level's
   std::string optimizer = {};    ///< how to better the tree: what optimizers::parse_optimizer reads; empty: the level's
-  std::string layout = "wide8";  ///< linear, wide4, wide8 or wide8-quads
+  std::string layout = {};       ///< id of layouts::registry; empty: queries::default_layout
   /// Wide layouts: what visiting a node costs against testing one block of triangles, > 0, and the most blocks of a
   /// leaf, 1 to 8 (docs/collapse.md). `linear` has no use for them.
-  float node_cost = 1.5f;
+  float node_cost = 2;
   int max_leaf_blocks = 4;
   std::string isa = {};  ///< empty = environment variable BOXWOOD_ISA, or the best the processor has
   /// Runs the build and later the batch queries. Null = a pool of its own over all processors.

@@ -85,6 +85,14 @@ class [[nodiscard]] Result<void> {
 
 using Status = Result<void>;
 
+namespace memory {
+/// Uninitialised memory for `AlignedBuffer`; large blocks lie in huge pages where the system has them (Linux). Throws
+/// std::bad_alloc. `alignment` is a power of two, at least that of operator new.
+void* allocate(std::size_t bytes, std::size_t alignment);
+/// Gives back what `allocate` gave for the same two numbers; null is allowed.
+void release(void* block, std::size_t bytes, std::size_t alignment) noexcept;
+}  // namespace memory
+
 /// A fixed-size array aligned to a cache line (64 bytes), uninitialised unless said otherwise. Moves, never copies.
 /// Throws std::bad_alloc, which every public entry point of the library turns into `ErrorCode::out_of_memory`.
 template <class T>
@@ -95,18 +103,21 @@ class AlignedBuffer {
   static constexpr std::size_t kAlignment = alignof(T) > 64 ? alignof(T) : 64;
 
   AlignedBuffer() = default;
-  explicit AlignedBuffer(std::size_t size) : size_(size) {
+  explicit AlignedBuffer(std::size_t size) : size_(size), capacity_(size) {
     if (size > SIZE_MAX / sizeof(T)) throw std::bad_alloc();
-    if (size) data_ = static_cast<T*>(::operator new(size * sizeof(T), std::align_val_t(kAlignment)));
+    if (size) data_ = static_cast<T*>(memory::allocate(size * sizeof(T), kAlignment));
   }
   AlignedBuffer(AlignedBuffer&& other) noexcept
-      : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+      : data_(std::exchange(other.data_, nullptr)),
+        size_(std::exchange(other.size_, 0)),
+        capacity_(std::exchange(other.capacity_, 0)) {}
   AlignedBuffer& operator=(AlignedBuffer&& other) noexcept {
     std::swap(data_, other.data_);
     std::swap(size_, other.size_);
+    std::swap(capacity_, other.capacity_);
     return *this;
   }
-  ~AlignedBuffer() { ::operator delete(data_, std::align_val_t(kAlignment)); }
+  ~AlignedBuffer() { memory::release(data_, capacity_ * sizeof(T), kAlignment); }
 
   T* data() noexcept { return data_; }
   const T* data() const noexcept { return data_; }
@@ -133,7 +144,7 @@ class AlignedBuffer {
 
  private:
   T* data_ = nullptr;
-  std::size_t size_ = 0;
+  std::size_t size_ = 0, capacity_ = 0;
 };
 
 /// 8-bit RGB, row by row from the top, 3 * width * height bytes.

@@ -14,7 +14,7 @@
 
 namespace boxwood::layouts {
 
-enum class LayoutId { linear, wide4, wide8, wide8_quads };
+enum class LayoutId { linear, wide4, wide8, wide8_quads, wide16, wide16_quads };
 
 /// One row of the registry of layouts.
 struct LayoutInfo {
@@ -25,6 +25,10 @@ struct LayoutInfo {
 std::span<const LayoutInfo> registry();
 Result<LayoutId> find(std::string_view name);
 const char* name(LayoutId id);
+/// Children a node may have: 2 for `linear`.
+int width(LayoutId id);
+/// Leaves are blocks of quads, not of triangles.
+bool has_quads(LayoutId id);
 
 /// PBRT's 32-byte node, depth first: the first child of an inner node follows it, the second is at `offset`.
 /// `count_and_axis`: bits 0-1 split axis of an inner node, bits 2-31 triangles of a leaf (0 = inner).
@@ -49,7 +53,7 @@ struct alignas(64) WideNode {
   float planes[6][W];
   std::uint32_t child[W];
 };
-static_assert(sizeof(WideNode<4>) == 128 && sizeof(WideNode<8>) == 256);
+static_assert(sizeof(WideNode<4>) == 128 && sizeof(WideNode<8>) == 256 && sizeof(WideNode<16>) == 448);
 
 /// Child words of a wide node: inner = index of the node; leaf = bit 31, bits 28-30 blocks - 1, bits 0-27 first block.
 inline constexpr std::uint32_t kLeafBit = 0x80000000u;
@@ -111,14 +115,15 @@ struct Layout {
 /// can address, a reference past the mesh, out of memory. Deterministic, parallel, any depth.
 Result<Layout> encode_linear(const tree::BinaryTree& tree, const MeshView& mesh, Executor& executor);
 
-/// Encodes a tree of width 4 or 8 as `wide4` or `wide8`. Leaves must hold 1 to 32 references. Errors as above.
+/// Encodes a tree of width 4, 8 or 16 as `wide4`, `wide8` or `wide16`. Leaves must hold 1 to 32 references. Errors as
+/// above.
 Result<Layout> encode_wide(const tree::WideTree& tree, const MeshView& mesh, Executor& executor);
 
-/// Encodes a tree of width 8 as `wide8-quads`, pairing triangles of one leaf that have an edge in common. Errors as
-/// above, and a mesh of more than 2^29 triangles.
+/// Encodes a tree of width 8 or 16 as `wide8-quads` or `wide16-quads`, pairing triangles of one leaf that have an edge
+/// in common. Errors as above, and a mesh of more than 2^29 triangles.
 Result<Layout> encode_wide_quads(const tree::WideTree& tree, const MeshView& mesh, Executor& executor);
 
-/// Blocks that a leaf over these references takes in `wide8-quads`; above 32 references, leaves of 32 each.
+/// Blocks that a leaf over these references takes in layouts with quads; above 32 references, leaves of 32 each.
 std::uint32_t quad_blocks(std::span<const std::uint32_t> references, const MeshView& mesh);
 
 /// Walks the encoded tree and gives the first contradiction as an error: every child box holds all triangles below it

@@ -109,6 +109,14 @@ enum class Weld { position, index };
 /// Requires check_indices to have passed. O(n), parallel, deterministic.
 AlignedBuffer<EdgeLink> edge_links(const MeshView& mesh, Weld weld, Executor& executor);
 
+/// Triangles across a triangle's sides from corner 0 to 1, 1 to 2 and 2 to 0.
+using EdgeNeighbours = std::array<std::uint32_t, 3>;
+inline constexpr std::uint32_t kNoNeighbour = 0xffffffffu;
+/// The neighbours of all triangles, unusable ones without any. Of three or more triangles on an edge the first is the
+/// neighbour of the second, the third that of the fourth, and so on by their ids. Requires check_indices to have passed.
+/// Expected O(n), parallel, deterministic.
+AlignedBuffer<EdgeNeighbours> edge_neighbours(const MeshView& mesh, Weld weld, Executor& executor);
+
 // ---- Procedural scenes -------------------------------------------------------------------------------------------
 
 /// How to make a scene. `triangles` is a target from 12 to 20 million: the scene comes as near to it as its

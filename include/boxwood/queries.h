@@ -73,6 +73,10 @@ std::vector<std::string> supported_isas();
 /// the best one. Errors: a name that is unknown or that this processor can't run.
 Result<std::string> choose_isa(std::string_view name = {});
 
+/// The layout that is fastest with an instruction set (empty: the one choose_isa takes): wide16 with AVX-512, else
+/// wide8 (docs/layouts.md).
+const char* default_layout(std::string_view isa = {});
+
 /// The kernels of one layout, mode and instruction set. All take arrays of rays of any length and walk them one by
 /// one; outputs have the same length. Thread safe, no allocation unless the tree is unusually deep.
 struct Kernels {

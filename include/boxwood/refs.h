@@ -47,6 +47,8 @@ class Primitives {
                     std::span<Box> parts) const = 0;
   /// Pairs of primitives that share an edge, by rank, as mesh::edge_links gives them. By default there are none.
   virtual AlignedBuffer<mesh::EdgeLink> edge_links(mesh::Weld weld, Executor& executor) const;
+  /// The neighbours of each primitive over its edges, as mesh::edge_neighbours gives them. By default nothing at all.
+  virtual AlignedBuffer<mesh::EdgeNeighbours> edge_neighbours(mesh::Weld weld, Executor& executor) const;
 };
 
 /// The primitives of a triangle mesh. Reads the mesh's arrays, which must outlive it. Only usable triangles may be

@@ -18,10 +18,10 @@ Result<layouts::Layout> encode(layouts::LayoutId id, const tree::BinaryTree& tre
                                const AccelOptions& accel_options, Executor& executor) {
   if (id == layouts::LayoutId::linear) return layouts::encode_linear(tree, mesh, executor);
   optimizers::CollapseOptions options;
-  options.width = id == layouts::LayoutId::wide4 ? 4 : 8;
+  options.width = layouts::width(id);
   options.node_cost = accel_options.node_cost;
   options.max_leaf_blocks = accel_options.max_leaf_blocks;
-  const bool quads = id == layouts::LayoutId::wide8_quads;
+  const bool quads = layouts::has_quads(id);
   if (quads) {
     // Pricing looks at the triangles, before the encoder could find one that is not there.
     if (auto status = layouts::check_references(tree.references.span(), mesh); !status) return status.error();
@@ -34,6 +34,10 @@ Result<layouts::Layout> encode(layouts::LayoutId id, const tree::BinaryTree& tre
   auto wide = optimizers::collapse_to_wide(tree, options, executor);
   if (!wide) return wide.error();
   return quads ? layouts::encode_wide_quads(*wide, mesh, executor) : layouts::encode_wide(*wide, mesh, executor);
+}
+
+Result<layouts::LayoutId> find_layout(const AccelOptions& options) {
+  return layouts::find(options.layout.empty() ? queries::default_layout(options.isa) : options.layout);
 }
 
 Status same_length(std::size_t rays, std::size_t results, const char* what) {
@@ -84,7 +88,7 @@ Result<Accel> Accel::build(const MeshView& mesh, const AccelOptions& options) {
     AccelOptions resolved = options;
     if (!resolved.executor) resolved.executor = std::make_shared<ThreadExecutor>();
     // Fail on a misspelt option before the work, not after it.
-    if (auto layout = layouts::find(options.layout); !layout) return layout.error();
+    if (auto layout = find_layout(options); !layout) return layout.error();
     if (auto isa = queries::choose_isa(options.isa); !isa) return isa.error();
     const auto plan = plan_tree(options.build, options.presplit, options.optimizer);
     if (!plan) return plan.error();
@@ -104,7 +108,7 @@ Result<Accel> Accel::from_tree(const MeshView& mesh, const tree::BinaryTree& tre
   try {
     auto state = std::make_unique<State>();
     state->executor = options.executor ? options.executor : std::make_shared<ThreadExecutor>();
-    auto id = layouts::find(options.layout);
+    auto id = find_layout(options);
     if (!id) return id.error();
     auto isa = queries::choose_isa(options.isa);
     if (!isa) return isa.error();

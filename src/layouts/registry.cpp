@@ -12,6 +12,10 @@ constexpr LayoutInfo kLayouts[] = {
     {LayoutId::wide8_quads, "wide8-quads",
      "wide8 with pairs of triangles that share an edge in its leaves; best for large connected meshes and small "
      "memory"},
+    {LayoutId::wide16, "wide16",
+     "448-byte nodes of 16 children: fewer steps for each ray; best for speed with AVX-512"},
+    {LayoutId::wide16_quads, "wide16-quads",
+     "wide16 with pairs of triangles in its leaves; best for small memory with AVX-512"},
 };
 
 }  // namespace
@@ -33,6 +37,26 @@ const char* name(LayoutId id) {
   for (const LayoutInfo& row : kLayouts)
     if (row.id == id) return row.name;
   return "?";
+}
+
+int width(LayoutId id) {
+  switch (id) {
+    case LayoutId::linear:
+      return 2;
+    case LayoutId::wide4:
+      return 4;
+    case LayoutId::wide8:
+    case LayoutId::wide8_quads:
+      return 8;
+    case LayoutId::wide16:
+    case LayoutId::wide16_quads:
+      return 16;
+  }
+  return 0;
+}
+
+bool has_quads(LayoutId id) {
+  return id == LayoutId::wide8_quads || id == LayoutId::wide16_quads;
 }
 
 }  // namespace boxwood::layouts

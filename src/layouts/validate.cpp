@@ -35,9 +35,11 @@ class Checker {
     while (!stack_.empty()) {
       const Item item = stack_.back();
       stack_.pop_back();
-      Status status = layout_.id == LayoutId::linear  ? linear(item)
-                      : layout_.id == LayoutId::wide4 ? wide<4>(item)
-                                                      : wide<8>(item);
+      const int children = width(layout_.id);
+      Status status = children == 2   ? linear(item)
+                      : children == 4 ? wide<4>(item)
+                      : children == 8 ? wide<8>(item)
+                                      : wide<16>(item);
       if (!status) return status;
     }
     if (nodes_ != layout_.node_count)
@@ -150,7 +152,7 @@ class Checker {
 
   template <int W>
   Status wide(const Item& item) {
-    if (item.word & kLeafBit) return layout_.id == LayoutId::wide8_quads ? quad_leaf(item) : leaf(item);
+    if (item.word & kLeafBit) return has_quads(layout_.id) ? quad_leaf(item) : leaf(item);
     if (item.word >= layout_.nodes.size() / sizeof(WideNode<W>))
       return bad("node " + std::to_string(item.word) + " is past the array");
     const auto& node = reinterpret_cast<const WideNode<W>*>(layout_.nodes.data())[item.word];

@@ -1,7 +1,7 @@
-// Layouts `wide4` and `wide8`: nodes that hold the boxes of all their children plane by plane, so that one SIMD
-// operation tests them together (Dammertz, Hanika and Keller 2008, bib key qbvh; Ernst and Greiner 2008; Wald, Benthin
-// and Boulos 2008), over blocks of four triangles stored the same way; `wide8-quads`, the same nodes over blocks of
-// four quads (quads.cpp). O(nodes + triangles), deterministic, parallel.
+// Layouts `wide4`, `wide8` and `wide16`: nodes that hold the boxes of all their children plane by plane, so that one
+// SIMD operation tests them together (Dammertz, Hanika and Keller 2008, bib key qbvh; Ernst and Greiner 2008; Wald,
+// Benthin and Boulos 2008), over blocks of four triangles stored the same way; `wide8-quads` and `wide16-quads`, the
+// same nodes over blocks of four quads (quads.cpp). O(nodes + triangles), deterministic, parallel.
 #include <limits>
 #include <vector>
 
@@ -62,8 +62,8 @@ void fill_node(WideNode<W>& node, std::span<const tree::WideTree::Child> childre
 }
 
 /// References below each child. Children's nodes stand behind their parents, so one backward pass is enough.
-std::vector<std::uint32_t> count_references(const tree::WideTree& tree) {
-  std::vector<std::uint32_t> below(tree.children.size());
+AlignedBuffer<std::uint32_t> count_references(const tree::WideTree& tree) {
+  AlignedBuffer<std::uint32_t> below(tree.children.size());
   for (std::size_t node = tree.first_child.size() - 1; node-- > 0;)
     for (std::size_t c = tree.first_child[node]; c < tree.first_child[node + 1]; ++c) {
       const auto& child = tree.children[c];
@@ -75,24 +75,33 @@ std::vector<std::uint32_t> count_references(const tree::WideTree& tree) {
   return below;
 }
 
+using Children = AlignedBuffer<tree::WideTree::Child>;
+
 /// The order in which an any-hit query tries the children of each node: likely to be met and cheap to search first, by
 /// area / (1 + references), descending. Closest-hit queries go by distance and don't mind.
-std::vector<tree::WideTree::Child> order_children(const tree::WideTree& tree) {
+Children order_children(const tree::WideTree& tree, Executor& executor) {
   const auto below = count_references(tree);
-  auto children = tree.children;
-  std::vector<std::pair<float, std::uint32_t>> order;
-  for (std::size_t node = 0; node + 1 < tree.first_child.size(); ++node) {
-    const std::uint32_t first = tree.first_child[node], last = tree.first_child[node + 1];
-    order.clear();
-    for (std::uint32_t c = first; c < last; ++c)
-      order.push_back({tree.children[c].bounds.half_area() / (1.0f + static_cast<float>(below[c])), c});
-    std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-    for (std::uint32_t i = 0; i < order.size(); ++i) children[first + i] = tree.children[order[i].second];
-  }
+  Children children(tree.children.size());
+  executor.for_chunks(tree.first_child.size() - 1, 1024, [&](std::size_t, std::size_t begin, std::size_t end) {
+    std::vector<float> worth;
+    for (std::size_t node = begin; node < end; ++node) {
+      const std::uint32_t first = tree.first_child[node], count = tree.first_child[node + 1] - first;
+      worth.resize(count);
+      for (std::uint32_t i = 0; i < count; ++i) {  // insertion sort: few children, and equal ones stay in order
+        const tree::WideTree::Child& child = tree.children[first + i];
+        const float own = child.bounds.half_area() / (1.0f + static_cast<float>(below[first + i]));
+        std::uint32_t place = i;
+        for (; place > 0 && worth[place - 1] < own; --place) {
+          worth[place] = worth[place - 1];
+          children[first + place] = children[first + place - 1];
+        }
+        worth[place] = own;
+        children[first + place] = child;
+      }
+    }
+  });
   return children;
 }
-
-using Children = std::vector<tree::WideTree::Child>;
 
 template <int W, class Blocks>
 void fill(Layout& layout, const tree::WideTree& tree, std::span<const tree::WideTree::Child> children,
@@ -115,9 +124,9 @@ void fill(Layout& layout, const tree::WideTree& tree, std::span<const tree::Wide
 
 /// The child words, with leaves one behind the other, and the number of blocks.
 template <class Blocks>
-std::pair<std::vector<std::uint32_t>, std::size_t> place_leaves(const tree::WideTree& tree, const Children& children,
-                                                                const MeshView& mesh, Executor& executor) {
-  std::vector<std::uint32_t> words(children.size());
+std::pair<AlignedBuffer<std::uint32_t>, std::size_t> place_leaves(const tree::WideTree& tree, const Children& children,
+                                                                  const MeshView& mesh, Executor& executor) {
+  AlignedBuffer<std::uint32_t> words(children.size());
   executor.for_chunks(words.size(), 4096, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c)
       words[c] = children[c].count == 0
@@ -146,7 +155,7 @@ Result<Layout> encode(LayoutId id, const tree::WideTree& tree, const MeshView& m
     layout.node_count = tree.first_child.size() - 1;
     layout.reference_count = tree.references.size();
 
-    const Children children = order_children(tree);
+    const Children children = order_children(tree, executor);
     for (std::size_t c = 0; c < children.size(); ++c) {
       if (children[c].count > 32)
         return {ErrorCode::too_large, "a leaf of a wide layout holds at most 32 references, child " +
@@ -159,7 +168,7 @@ Result<Layout> encode(LayoutId id, const tree::WideTree& tree, const MeshView& m
               "a wide layout addresses at most 2^28 blocks of triangles, the tree needs " + std::to_string(blocks)};
     layout.triangles = AlignedBuffer<std::byte>(blocks * sizeof(typename Blocks::Block));
     layout.root = 0;
-    fill<W, Blocks>(layout, tree, children, words, mesh, executor);
+    fill<W, Blocks>(layout, tree, children.span(), words.span(), mesh, executor);
     return layout;
   });
 }
@@ -169,16 +178,19 @@ Result<Layout> encode(LayoutId id, const tree::WideTree& tree, const MeshView& m
 Result<Layout> encode_wide(const tree::WideTree& tree, const MeshView& mesh, Executor& executor) {
   if (tree.width == 4) return encode<4, TriangleBlocks>(LayoutId::wide4, tree, mesh, executor);
   if (tree.width == 8) return encode<8, TriangleBlocks>(LayoutId::wide8, tree, mesh, executor);
-  return {ErrorCode::invalid_argument, "wide layouts have 4 or 8 children a node, not " + std::to_string(tree.width)};
+  if (tree.width == 16) return encode<16, TriangleBlocks>(LayoutId::wide16, tree, mesh, executor);
+  return {ErrorCode::invalid_argument,
+          "wide layouts have 4, 8 or 16 children a node, not " + std::to_string(tree.width)};
 }
 
 Result<Layout> encode_wide_quads(const tree::WideTree& tree, const MeshView& mesh, Executor& executor) {
-  if (tree.width != 8)
-    return {ErrorCode::invalid_argument, "wide8-quads has 8 children a node, not " + std::to_string(tree.width)};
   if (mesh.triangle_count > kQuadIdMask + std::size_t{1})
     return {ErrorCode::too_large,
-            "wide8-quads holds meshes of at most 2^29 triangles, not " + std::to_string(mesh.triangle_count)};
-  return encode<8, QuadBlocks>(LayoutId::wide8_quads, tree, mesh, executor);
+            "layouts with quads hold meshes of at most 2^29 triangles, not " + std::to_string(mesh.triangle_count)};
+  if (tree.width == 8) return encode<8, QuadBlocks>(LayoutId::wide8_quads, tree, mesh, executor);
+  if (tree.width == 16) return encode<16, QuadBlocks>(LayoutId::wide16_quads, tree, mesh, executor);
+  return {ErrorCode::invalid_argument,
+          "layouts with quads have 8 or 16 children a node, not " + std::to_string(tree.width)};
 }
 
 }  // namespace boxwood::layouts

@@ -8,6 +8,7 @@
 
 #include "boxwood/mesh.h"
 #include "mesh/chunks.h"
+#include "mesh/usable.h"
 #include "parallel/radix_sort.h"
 
 namespace boxwood::mesh {
@@ -20,29 +21,6 @@ constexpr std::uint64_t kLargestKey = (std::uint64_t{1} << kKeyBits) - 1;
 std::uint64_t area_key(Vec3 p, Vec3 q) {
   const double x = std::fabs(double(p.x) - q.x), y = std::fabs(double(p.y) - q.y), z = std::fabs(double(p.z) - q.z);
   return kLargestKey - (std::bit_cast<std::uint64_t>(x * y + y * z + z * x) >> (63 - kKeyBits));
-}
-
-bool is_usable_vertex(Vec3 p) {
-  return std::fabs(p.x) <= kLargestCoordinate && std::fabs(p.y) <= kLargestCoordinate &&
-         std::fabs(p.z) <= kLargestCoordinate;
-}
-
-/// Flags of the triangles that can't be used; empty when all can.
-std::vector<std::uint8_t> find_unusable(const MeshView& mesh, Executor& executor) {
-  std::vector<std::uint8_t> bad_chunks(chunk_count(mesh.vertex_count));
-  executor.for_chunks(mesh.vertex_count, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    bool usable = true;
-    for (std::size_t v = begin; v < end; ++v) usable &= is_usable_vertex(mesh.vertex(v));
-    bad_chunks[chunk] = !usable;
-  });
-  bool all_usable = true;
-  for (const std::uint8_t bad : bad_chunks) all_usable &= !bad;
-  if (all_usable) return {};
-  std::vector<std::uint8_t> unusable(mesh.triangle_count);
-  executor.for_chunks(mesh.triangle_count, kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) unusable[t] = !mesh::is_usable(mesh.triangle(t));
-  });
-  return unusable;
 }
 
 /// A side of a triangle is keyed by the ends of its edge, the lower vertex above the higher one.

@@ -31,8 +31,9 @@ class Emitter {
       : tree_(tree), costs_(costs), width_(options.width), largest_leaf_(largest_leaf(options)) {
     out_.width = options.width;
     out_.bounds = tree.nodes[0].bounds;
-    out_.children.reserve(tree.nodes.size() / 4);
-    out_.first_child.reserve(tree.nodes.size() / 16);
+    // Never more children than leaves, and inner nodes have several: what is not needed is not touched.
+    out_.children.reserve(tree.nodes.size() / 2);
+    out_.first_child.reserve(tree.nodes.size() / 4);
   }
 
   tree::WideTree run() && {

@@ -17,6 +17,7 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "optimizers/leaf_chunks.h"
 
@@ -202,8 +203,8 @@ Result<ForestCosts> price_forests(const tree::BinaryTree& tree, const CollapseOp
   const Programme programme(tree, options, out);
   std::vector<Run> runs;
   if (!programme.plan(runs)) return malformed;
-  out.choices.resize(programme.pairs());
-  out.counts.resize(programme.pairs());
+  out.choices = AlignedBuffer<Choice>(programme.pairs());
+  out.counts = AlignedBuffer<std::uint32_t>(programme.pairs());
 
   std::vector<std::uint32_t> tasks;  // runs of more than one pair: whole subtrees
   for (std::size_t r = 0; r < runs.size(); ++r)

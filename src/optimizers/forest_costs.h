@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "boxwood/optimizers.h"
 
@@ -33,8 +32,8 @@ class Choice {
 
 /// Choices of all inner nodes, by half the index of their children (canonical trees keep children in pairs).
 struct ForestCosts {
-  std::vector<Choice> choices;
-  std::vector<std::uint32_t> counts;  ///< references below the node
+  AlignedBuffer<Choice> choices;
+  AlignedBuffer<std::uint32_t> counts;  ///< references below the node
   double root_cost = 0;               ///< of the whole tree as one wide node or leaf, in units of area
 
   static std::uint32_t pair_of(const tree::Node& node) { return (node.first - 1) / 2; }

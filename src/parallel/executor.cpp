@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "boxwood/parallel.h"
+#include "parallel/work_order.h"
 
 namespace boxwood {
 
@@ -52,10 +53,13 @@ void ThreadExecutor::for_chunks(std::size_t count, std::size_t chunk_size,
     SequentialExecutor().for_chunks(count, chunk_size, f);
     return;
   }
+  WorkOrder order;
   arena_->arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chunks, 1), [&](const tbb::blocked_range<std::size_t>& range) {
+      order.begin_piece();
       for (std::size_t chunk = range.begin(); chunk != range.end(); ++chunk)
         f(chunk, chunk * chunk_size, std::min(count, (chunk + 1) * chunk_size));
+      order.end_piece();
     });
   });
 }
@@ -66,7 +70,13 @@ void ThreadExecutor::invoke(FunctionRef<void()> a, FunctionRef<void()> b) {
     b();
     return;
   }
-  arena_->arena.execute([&] { tbb::parallel_invoke(a, b); });
+  WorkOrder order;
+  const auto piece = [&](FunctionRef<void()> work) {
+    order.begin_piece();
+    work();
+    order.end_piece();
+  };
+  arena_->arena.execute([&] { tbb::parallel_invoke([&] { piece(a); }, [&] { piece(b); }); });
 }
 
 }  // namespace boxwood

@@ -96,6 +96,11 @@ Result<std::string> choose_isa(std::string_view wanted) {
   return name;
 }
 
+const char* default_layout(std::string_view name) {
+  const auto isa = choose_isa(name);
+  return isa && *isa == "avx512" ? "wide16" : "wide8";
+}
+
 Result<Kernels> select_kernels(layouts::LayoutId layout, Mode mode, std::string_view name) {
   const auto chosen = choose_isa(name);
   if (!chosen) return chosen.error();
@@ -109,6 +114,10 @@ Result<Kernels> select_kernels(layouts::LayoutId layout, Mode mode, std::string_
       return wide8_kernels(mode, target);
     case layouts::LayoutId::wide8_quads:
       return wide8_quads_kernels(mode, target);
+    case layouts::LayoutId::wide16:
+      return wide16_kernels(mode, target);
+    case layouts::LayoutId::wide16_quads:
+      return wide16_quads_kernels(mode, target);
   }
   return {ErrorCode::unknown_name, "there is no layout number " + std::to_string(static_cast<int>(layout))};
 }

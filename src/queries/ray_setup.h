@@ -33,7 +33,6 @@ struct RaySetup {
   float t_scale;                      // t of the user's direction = t_scale * t of the scaled one; a power of two
   int kx, ky, kz;                     // kz: axis of the largest direction component
   float shear_x, shear_y, inverse_z;
-  double exact_shear_x, exact_shear_y;  // of the scaled direction, before rounding to float
 };
 
 /// False when nothing can be hit: NaN or infinity in origin or direction, zero direction, empty interval.
@@ -68,12 +67,10 @@ inline bool set_up(const Ray& ray, const Box& bounds, RaySetup& s) {
   s.kz = x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2);
   s.kx = s.kz == 2 ? 0 : s.kz + 1;
   s.ky = s.kx == 2 ? 0 : s.kx + 1;
-  const double dz = s.direction[s.kz];
-  s.inverse_z = 1.0f / s.direction[s.kz];
-  s.exact_shear_x = s.direction[s.kx] / dz;
-  s.exact_shear_y = s.direction[s.ky] / dz;
-  s.shear_x = static_cast<float>(s.exact_shear_x);
-  s.shear_y = static_cast<float>(s.exact_shear_y);
+  const float dz = s.direction[s.kz];
+  s.inverse_z = 1.0f / dz;
+  s.shear_x = s.direction[s.kx] / dz;
+  s.shear_y = s.direction[s.ky] / dz;
   return true;
 }
 

@@ -76,11 +76,14 @@ inline bool robust_test(const PermutedTriangle& triangle, const RaySetup& ray, S
 class Location {
  public:
   [[gnu::always_inline]] Location(const PermutedTriangle& triangle, const RaySetup& ray) {
+    // The shear once more without rounding it to single precision; few triangles come here, so not once per ray.
+    const double dz = ray.direction[ray.kz];
+    const double shear_x = ray.direction[ray.kx] / dz, shear_y = ray.direction[ray.ky] / dz;
     double x[3], y[3], z[3];
     for (int i = 0; i < 3; ++i) {
       z[i] = double(triangle.z[i]) - ray.origin[ray.kz];
-      x[i] = (double(triangle.x[i]) - ray.origin[ray.kx]) - ray.exact_shear_x * z[i];
-      y[i] = (double(triangle.y[i]) - ray.origin[ray.ky]) - ray.exact_shear_y * z[i];
+      x[i] = (double(triangle.x[i]) - ray.origin[ray.kx]) - shear_x * z[i];
+      y[i] = (double(triangle.y[i]) - ray.origin[ray.ky]) - shear_y * z[i];
     }
     weights_ = EdgeFunctions(x, y);
     sum_ = weights_.clamp();
@@ -91,7 +94,7 @@ class Location {
       weights_ = EdgeFunctions(sheared.x, sheared.y);
       sum_ = weights_.clamp();
     }
-    t_ = (weights_.u * z[0] + weights_.v * z[1] + weights_.w * z[2]) / (sum_ * ray.direction[ray.kz]);
+    t_ = (weights_.u * z[0] + weights_.v * z[1] + weights_.w * z[2]) / (sum_ * dz);
   }
   float t() const { return static_cast<float>(t_); }
   /// u and v, times sum(): the division can wait until the hit has turned out to be the nearest.

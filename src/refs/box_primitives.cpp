@@ -30,6 +30,10 @@ AlignedBuffer<mesh::EdgeLink> Primitives::edge_links(mesh::Weld, Executor&) cons
   return {};
 }
 
+AlignedBuffer<mesh::EdgeNeighbours> Primitives::edge_neighbours(mesh::Weld, Executor&) const {
+  return {};
+}
+
 std::shared_ptr<const Primitives> box_primitives() {
   return std::make_shared<BoxPrimitives>();
 }

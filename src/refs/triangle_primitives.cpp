@@ -51,6 +51,9 @@ class TrianglePrimitives final : public Primitives {
   AlignedBuffer<mesh::EdgeLink> edge_links(mesh::Weld weld, Executor& executor) const override {
     return mesh::edge_links(mesh_, weld, executor);
   }
+  AlignedBuffer<mesh::EdgeNeighbours> edge_neighbours(mesh::Weld weld, Executor& executor) const override {
+    return mesh::edge_neighbours(mesh_, weld, executor);
+  }
 
  private:
   MeshView mesh_;

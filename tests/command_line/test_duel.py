@@ -105,7 +105,8 @@ class Duel(CommandLineTest):
 
 class Ablate(CommandLineTest):
     def test_each_technique_is_left_out_alone(self):
-        report = self.report("ablate", SCENE, "--builder", "sbvh", "--presplit", "evh:t=14", *QUICK)
+        report = self.report("ablate", SCENE, "--builder", "sbvh", "--presplit", "evh:t=14", "--layout", "wide8",
+                             *QUICK)
         self.assert_environment(report, "ablate")
         rows = {(row["without"], row["rays"]): row for row in report["rows"]}
         self.assertEqual(len(rows), len(report["rows"]))

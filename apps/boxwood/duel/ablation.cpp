@@ -47,8 +47,12 @@ const std::vector<Technique>& techniques() {
       {"pre-split", leave_out_presplit},
       {"spatial splits", leave_out_spatial_splits},
       {"reinsertion", leave_out_optimizer},
+      {"sixteen children a node", [](AccelOptions& o) { return o.layout == "wide16" && differs(o.layout, "wide8"); }},
       {"eight children a node", [](AccelOptions& o) { return o.layout == "wide8" && differs(o.layout, "wide4"); }},
-      {"quads", [](AccelOptions& o) { return o.layout == "wide8-quads" && differs(o.layout, "wide8"); }},
+      {"quads",
+       [](AccelOptions& o) {
+         return o.layout.ends_with("-quads") && differs(o.layout, o.layout.substr(0, o.layout.size() - 6).c_str());
+       }},
       {"wide nodes and blocks", [](AccelOptions& o) { return differs(o.layout, "linear"); }},
       {"huge pages", nothing, false},
       {"fast mode (robust instead)", nothing, true, queries::Mode::robust},

@@ -13,6 +13,8 @@
 #include "builders/parts/edge_clustering.h"
 #include "builders/parts/merge_forest.h"
 #include "builders/parts/option_specs.h"
+#include "builders/parts/pair_finder.h"
+#include "builders/parts/top_down.h"
 
 namespace boxwood::builders {
 namespace {
@@ -95,7 +97,7 @@ OptionSpec top_option(const Tops& tops) {
 const Tops kTops("middle"), kGatedTops("binned-sah");
 const std::array<OptionSpec, 7> kOptions{kWeldOption,         top_option(kTops),   rounds_option(0), kPairCutoffOption,
                                          gate_area_option(0), gate_size_option(0), kLeafMaxOption};
-const std::array<OptionSpec, 7> kGatedOptions{kWeldOption,       top_option(kGatedTops), rounds_option(3),
+const std::array<OptionSpec, 7> kGatedOptions{kWeldOption,       top_option(kGatedTops), rounds_option(1),
                                               kPairCutoffOption, gate_area_option(0.8),  gate_size_option(0),
                                               kLeafMaxOption};
 
@@ -261,8 +263,37 @@ Result<tree::BinaryTree> build_ebbvh(refs::ReferenceSet&& set, const OptionValue
   return build_with_top(std::move(set), options, kTops.ids[options.choice("top")], context);
 }
 
+/// One round below a binned surface area heuristic: pairs need no order, no clusters and no tree of their own.
+Result<tree::BinaryTree> build_over_pairs(refs::ReferenceSet&& set, const OptionValues& options,
+                                          const BuildContext& context) {
+  const auto weld = static_cast<mesh::Weld>(options.choice("weld"));
+  const std::size_t count = set.references.size();
+  EdgePairs pairs = pair_references(set, weld, options.number("gate.area"), context.executor);
+  const std::size_t roots = pairs.pairs.size();
+  AlignedBuffer<tree::Node> nodes;
+  AlignedBuffer<std::uint32_t> ids;
+  {
+    ReferenceRanges ranges(std::move(pairs.set));
+    const BuildRange root = ranges.root(context.executor);
+    PairFinder finder(ranges, root, pairs, set.references.span(), options.cost(), options.integer(kLeafMax));
+    TopDownDriver<PairFinder> driver(finder, roots, context, kLargeRange, 2 * count, 2 * roots);
+    if (!driver.run(root)) return cancelled_error();
+    nodes = std::move(driver.nodes());
+    ids = std::move(driver.ids());
+  }
+  set.references = {};
+  tree::BinaryTree tree = tree::canonicalize(nodes.span(), ids.span(), set.primitive_count, false, context.executor);
+  tree.notes = {{"pairs of round 1", double(count - roots)},
+                {"roots after round 1", double(roots)},
+                {"rounds", 1},
+                {"roots", double(roots)}};
+  return tree;
+}
+
 Result<tree::BinaryTree> build_ebbvh_gated(refs::ReferenceSet&& set, const OptionValues& options,
                                            const BuildContext& context) {
+  if (options.integer("rounds") == 1 && options.choice("top") == 0 && options.integer("gate.size") != 1)
+    return build_over_pairs(std::move(set), options, context);
   return build_with_top(std::move(set), options, kGatedTops.ids[options.choice("top")], context);
 }
 

@@ -24,6 +24,7 @@ struct Float4 {
   static Float4 fill_bits(std::uint32_t x) { return {_mm_castsi128_ps(_mm_set1_epi32(static_cast<int>(x)))}; }
   static Float4 of(float x, float y, float z, float w = 0) { return {_mm_setr_ps(x, y, z, w)}; }
   void store(void* p) const { _mm_store_ps(static_cast<float*>(p), v); }
+  void store_anywhere(float* p) const { _mm_storeu_ps(p, v); }
   /// Truncated to integers; not negative.
   void store_integers(std::uint32_t* p) const { _mm_store_si128(reinterpret_cast<__m128i*>(p), _mm_cvttps_epi32(v)); }
   static Float4 load_integers(const std::uint32_t* p) {
@@ -90,6 +91,7 @@ struct Float4 {
   }
   static Float4 of(float x, float y, float z, float w = 0) { return {{x, y, z, w}}; }
   void store(void* p) const { std::memcpy(p, v, 16); }
+  void store_anywhere(float* p) const { std::memcpy(p, v, 16); }
   void store_integers(std::uint32_t* p) const {
     for (int i = 0; i < 4; ++i) p[i] = static_cast<std::uint32_t>(v[i]);
   }

@@ -11,8 +11,9 @@ namespace boxwood::builders {
 /// Base of the split finders: everything but `find`.
 class PlaneFinder {
  public:
+  PlaneFinder(ReferenceRanges& ranges, std::uint32_t leaf_max) : ranges_(ranges), leaf_max_(leaf_max) {}
   PlaneFinder(ReferenceRanges& ranges, const BuildRange&, const OptionValues& options)
-      : ranges_(ranges), leaf_max_(options.integer(kLeafMax)) {}
+      : PlaneFinder(ranges, options.integer(kLeafMax)) {}
 
   RangeSplit median(const BuildRange& range) const { return ranges_.median(range); }
   void apply(const RangeSplit& split, const BuildRange& range, Executor& executor, BuildRange& left,

@@ -6,7 +6,11 @@
 //   void apply(const Split&, const BuildRange&, Executor&, BuildRange& left, BuildRange& right)
 //                                                  sorts the references and fills in all of both ranges but slot, depth
 //   void write_leaf(const BuildRange&, std::uint32_t* ids)
-// It is called for disjoint ranges from several threads at once.
+// It is called for disjoint ranges from several threads at once. A finder that makes small subtrees by itself has, in
+// place of the last,
+//   bool finishes(const BuildRange&)               does it make the subtree over the range?
+//   void finish(const BuildRange&, tree::Node* nodes, std::uint32_t* ids)
+//                                                  does so; without `finishes` said, it makes a leaf
 //
 // Large ranges are split in rounds, breadth first, each by a parallel find and apply (or, once there are many, side by
 // side); then each small range is finished by one thread. A stack that takes the larger half and goes on with the
@@ -17,6 +21,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "builders/parts/build_monitor.h"
@@ -28,17 +33,26 @@ namespace boxwood::builders {
 inline constexpr std::uint32_t kDepthLimit = 96;
 
 template <class Finder>
+concept MakesSubtrees = requires(Finder finder, const BuildRange& range) {
+  finder.finishes(range);
+};
+
+template <class Finder>
 class TopDownDriver {
  public:
   /// Ranges of more references than `large_range` are worked on by all threads.
   TopDownDriver(Finder& finder, std::size_t reference_count, const BuildContext& context,
                 std::size_t large_range = kLargeRange)
+      : TopDownDriver(finder, reference_count, context, large_range, 2 * reference_count, reference_count) {}
+  /// For a finder that makes subtrees and needs more room than two nodes and one id for each reference.
+  TopDownDriver(Finder& finder, std::size_t reference_count, const BuildContext& context, std::size_t large_range,
+                std::size_t nodes, std::size_t ids)
       : finder_(finder),
         executor_(context.executor),
         monitor_(context, reference_count),
         large_range_(large_range),
-        nodes_(2 * reference_count),
-        ids_(reference_count) {}
+        nodes_(nodes),
+        ids_(ids) {}
 
   /// Fills nodes() and ids(). False when cancelled.
   bool run(const BuildRange& root) {
@@ -106,7 +120,7 @@ class TopDownDriver {
 
   /// True when the range was split, false when it became a leaf.
   bool split_or_leaf(const BuildRange& range, Executor& executor, BuildRange& left, BuildRange& right) {
-    if (range.size() > 1) {
+    if (!is_finished(range)) {
       const auto split = range.depth < kDepthLimit ? finder_.find(range, executor) : finder_.median(range);
       if (!split.is_leaf()) {
         finder_.apply(split, range, executor, left, right);
@@ -117,9 +131,18 @@ class TopDownDriver {
         return true;
       }
     }
-    finder_.write_leaf(range, ids_.data() + range.first);
-    nodes_[range.slot] = {range.bounds.box(), range.first, range.size()};
+    if constexpr (MakesSubtrees<Finder>) {
+      finder_.finish(range, nodes_.data(), ids_.data());
+    } else {
+      finder_.write_leaf(range, ids_.data() + range.first);
+      nodes_[range.slot] = {range.bounds.box(), range.first, range.size()};
+    }
     return false;
+  }
+
+  bool is_finished(const BuildRange& range) const {
+    if constexpr (MakesSubtrees<Finder>) return finder_.finishes(range);
+    return range.size() <= 1;
   }
 
   Finder& finder_;
@@ -129,5 +152,24 @@ class TopDownDriver {
   AlignedBuffer<tree::Node> nodes_;
   AlignedBuffer<std::uint32_t> ids_;
 };
+
+/// The tree of `set` that a finder which owns its references makes. `make_finder(ReferenceSet&&)` returns the finder;
+/// its `root(Executor&)` is the range of all references.
+template <class MakeFinder>
+Result<tree::BinaryTree> build_top_down(refs::ReferenceSet&& set, const BuildContext& context,
+                                        const MakeFinder& make_finder, std::size_t large_range = kLargeRange) {
+  const std::size_t count = set.references.size();
+  const std::size_t primitive_count = set.primitive_count;
+  AlignedBuffer<tree::Node> nodes;
+  AlignedBuffer<std::uint32_t> ids;
+  {
+    auto finder = make_finder(std::move(set));
+    TopDownDriver<decltype(finder)> driver(finder, count, context, large_range);
+    if (!driver.run(finder.root(context.executor))) return cancelled_error();
+    nodes = std::move(driver.nodes());
+    ids = std::move(driver.ids());
+  }  // the references are no longer needed: their memory goes before the canonical copy is made
+  return tree::canonicalize(nodes.span(), ids.span(), primitive_count, false, context.executor);
+}
 
 }  // namespace boxwood::builders

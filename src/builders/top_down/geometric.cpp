@@ -184,18 +184,10 @@ class GeometricFinder {
 
 Result<tree::BinaryTree> build_geometric(refs::ReferenceSet&& set, const OptionValues& options,
                                          const BuildContext& context) {
-  const std::size_t count = set.references.size();
-  const std::size_t primitive_count = set.primitive_count;
-  AlignedBuffer<tree::Node> nodes;
-  AlignedBuffer<std::uint32_t> ids;
-  {
-    GeometricFinder finder(std::move(set), options, context.executor);
-    TopDownDriver<GeometricFinder> driver(finder, count, context, kLargeSearch);
-    if (!driver.run(finder.root(context.executor))) return cancelled_error();
-    nodes = std::move(driver.nodes());
-    ids = std::move(driver.ids());
-  }  // the references are no longer needed: their memory goes before the canonical copy is made
-  return tree::canonicalize(nodes.span(), ids.span(), primitive_count, false, context.executor);
+  const auto make_finder = [&](refs::ReferenceSet&& references) {
+    return GeometricFinder(std::move(references), options, context.executor);
+  };
+  return build_top_down(std::move(set), context, make_finder, kLargeSearch);
 }
 
 }  // namespace

@@ -16,18 +16,10 @@ constexpr OptionSpec kOptions[] = {leaf_max_option(16, "most references in a lea
 
 Result<tree::BinaryTree> build_sweep_sah(refs::ReferenceSet&& set, const OptionValues& options,
                                          const BuildContext& context) {
-  const std::size_t count = set.references.size();
-  const std::size_t primitive_count = set.primitive_count;
-  AlignedBuffer<tree::Node> nodes;
-  AlignedBuffer<std::uint32_t> ids;
-  {
-    SweepFinder finder(std::move(set), LeafRule(options.cost(), options.integer(kLeafMax)), context.executor);
-    TopDownDriver<SweepFinder> driver(finder, count, context);
-    if (!driver.run(finder.root(context.executor))) return cancelled_error();
-    nodes = std::move(driver.nodes());
-    ids = std::move(driver.ids());
-  }  // the references are no longer needed: their memory goes before the canonical copy is made
-  return tree::canonicalize(nodes.span(), ids.span(), primitive_count, false, context.executor);
+  const auto make_finder = [&](refs::ReferenceSet&& references) {
+    return SweepFinder(std::move(references), LeafRule(options.cost(), options.integer(kLeafMax)), context.executor);
+  };
+  return build_top_down(std::move(set), context, make_finder);
 }
 
 }  // namespace

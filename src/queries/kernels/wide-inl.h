@@ -69,11 +69,12 @@ HWY_INLINE void offer_lanes(D d, std::uint64_t mask, V t, V u, V v, const typena
   }
 }
 
+/// The mask's bits, of up to 16 lanes.
 template <class D>
 HWY_INLINE std::uint64_t mask_bits(D d, hn::Mask<D> mask) {
   alignas(8) std::uint8_t bytes[8] = {};
   hn::StoreMaskBits(d, mask, bytes);
-  return bytes[0] & ((1u << hn::Lanes(d)) - 1);
+  return (bytes[0] | bytes[1] << 8) & ((1u << hn::Lanes(d)) - 1);
 }
 
 /// A corner in a block of planes: its coordinates are `stride` floats apart.
@@ -230,28 +231,51 @@ struct TriangleLeaf {
   }
 };
 
-/// Children of a node that the ray meets within [tmin, tmax], as bits, with their entry distances.
+/// What the box test needs of a ray, spread over the lanes once per ray.
 template <int W>
-HWY_INLINE std::uint32_t test_boxes(const WideNode<W>& node, const RaySetup& ray, float tmax, float* entry) {
-  const hn::CappedTag<float, W> d;
-  const int step = static_cast<int>(hn::Lanes(d));
-  std::uint32_t hit = 0;
-  for (int i = 0; i < W; i += step) {
-    const auto rx = hn::Set(d, ray.reciprocal[0]), ry = hn::Set(d, ray.reciprocal[1]),
-               rz = hn::Set(d, ray.reciprocal[2]);
-    const auto x0 = hn::MulAdd(hn::Load(d, node.planes[ray.entry_plane[0]] + i), rx, hn::Set(d, ray.entry_add[0]));
-    const auto y0 = hn::MulAdd(hn::Load(d, node.planes[ray.entry_plane[1]] + i), ry, hn::Set(d, ray.entry_add[1]));
-    const auto z0 = hn::MulAdd(hn::Load(d, node.planes[ray.entry_plane[2]] + i), rz, hn::Set(d, ray.entry_add[2]));
-    const auto x1 = hn::MulAdd(hn::Load(d, node.planes[ray.exit_plane[0]] + i), rx, hn::Set(d, ray.exit_add[0]));
-    const auto y1 = hn::MulAdd(hn::Load(d, node.planes[ray.exit_plane[1]] + i), ry, hn::Set(d, ray.exit_add[1]));
-    const auto z1 = hn::MulAdd(hn::Load(d, node.planes[ray.exit_plane[2]] + i), rz, hn::Set(d, ray.exit_add[2]));
-    const auto near = hn::Max(hn::Max(x0, y0), hn::Max(z0, hn::Set(d, ray.tmin)));
-    const auto far = hn::Min(hn::Min(x1, y1), hn::Min(z1, hn::Set(d, tmax)));
-    hn::Store(near, d, entry + i);
-    hit |= static_cast<std::uint32_t>(mask_bits(d, hn::Le(near, far))) << i;
+class BoxTest {
+ public:
+  HWY_INLINE explicit BoxTest(const RaySetup& ray) : tmin_(hn::Set(D(), ray.tmin)) {
+    const D d;
+    rx_ = hn::Set(d, ray.reciprocal[0]), ry_ = hn::Set(d, ray.reciprocal[1]), rz_ = hn::Set(d, ray.reciprocal[2]);
+    entry_x_ = hn::Set(d, ray.entry_add[0]), entry_y_ = hn::Set(d, ray.entry_add[1]);
+    entry_z_ = hn::Set(d, ray.entry_add[2]);
+    exit_x_ = hn::Set(d, ray.exit_add[0]), exit_y_ = hn::Set(d, ray.exit_add[1]);
+    exit_z_ = hn::Set(d, ray.exit_add[2]);
+    for (int axis = 0; axis < 3; ++axis) {
+      entry_row_[axis] = static_cast<std::uint32_t>(ray.entry_plane[axis] * W);
+      exit_row_[axis] = static_cast<std::uint32_t>(ray.exit_plane[axis] * W);
+    }
   }
-  return hit;
-}
+
+  /// Children of a node that the ray meets within [tmin, tmax], as bits, with their entry distances.
+  HWY_INLINE std::uint32_t operator()(const WideNode<W>& node, float tmax, float* entry) const {
+    const D d;
+    const int step = static_cast<int>(hn::Lanes(d));
+    const float* const planes = node.planes[0];
+    const auto limit = hn::Set(d, tmax);
+    std::uint32_t hit = 0;
+    for (int i = 0; i < W; i += step) {
+      const auto x0 = hn::MulAdd(hn::Load(d, planes + entry_row_[0] + i), rx_, entry_x_);
+      const auto y0 = hn::MulAdd(hn::Load(d, planes + entry_row_[1] + i), ry_, entry_y_);
+      const auto z0 = hn::MulAdd(hn::Load(d, planes + entry_row_[2] + i), rz_, entry_z_);
+      const auto x1 = hn::MulAdd(hn::Load(d, planes + exit_row_[0] + i), rx_, exit_x_);
+      const auto y1 = hn::MulAdd(hn::Load(d, planes + exit_row_[1] + i), ry_, exit_y_);
+      const auto z1 = hn::MulAdd(hn::Load(d, planes + exit_row_[2] + i), rz_, exit_z_);
+      const auto near = hn::Max(hn::Max(x0, y0), hn::Max(z0, tmin_));
+      const auto far = hn::Min(hn::Min(x1, y1), hn::Min(z1, limit));
+      hn::Store(near, d, entry + i);
+      hit |= static_cast<std::uint32_t>(mask_bits(d, hn::Le(near, far))) << i;
+    }
+    return hit;
+  }
+
+ private:
+  using D = hn::CappedTag<float, W>;
+  using V = hn::Vec<D>;
+  V rx_, ry_, rz_, entry_x_, entry_y_, entry_z_, exit_x_, exit_y_, exit_z_, tmin_;
+  std::uint32_t entry_row_[3], exit_row_[3];  // floats from the first plane
+};
 
 /// A waiting child: entry distance in the high half, child word in the low half. Distances are not negative, so their
 /// bits order like the numbers, and one integer comparison orders entries (equal distances by word).
@@ -275,7 +299,7 @@ HWY_INLINE std::uint32_t push_children(const WideNode<W>& node, std::uint32_t hi
     while (hit) {
       const int i = 31 - std::countl_zero(hit);
       hit ^= 1u << i;
-      *top++ = make_entry(entry[i], node.child[i]);
+      *top++ = node.child[i];  // no hit ends the ray but the last, so distances are of no use
     }
     return node.child[a];
   }
@@ -300,39 +324,50 @@ HWY_INLINE std::uint32_t push_children(const WideNode<W>& node, std::uint32_t hi
   return static_cast<std::uint32_t>(*--top);
 }
 
+template <class Leaf, bool kRobust, bool kAny>
+HWY_INLINE void test_leaf(const typename Leaf::Block* block, const typename Leaf::Block* end, const RaySetup& ray,
+                          Best<Leaf>& best) {
+  do {
+    if constexpr (kRobust)
+      Leaf::template robust<kAny>(*block, ray, best);
+    else
+      Leaf::fast(*block, ray, best);
+    if (kAny && best.block) return;
+  } while (++block != end);
+}
+
+template <class Block>
+HWY_INLINE void count_leaf(const Block* block, const Block* end, Counts& counts) {
+  ++counts.leaves;
+  for (; block != end; ++block)
+    for (std::uint32_t id : block->primitive) counts.primitives += id != layouts::kInvalidPrimitive;
+}
+
 template <int W, class Leaf, bool kRobust, bool kAny, bool kCount>
 HWY_INLINE bool traverse(const Layout& layout, const RaySetup& ray, StackEntry* const stack, Best<Leaf>& best,
                          Counts* counts) {
-  const auto* nodes = reinterpret_cast<const WideNode<W>*>(layout.nodes.data());
+  const auto* const nodes = reinterpret_cast<const WideNode<W>*>(layout.nodes.data());
   using Block = typename Leaf::Block;
-  const auto* blocks = reinterpret_cast<const Block*>(layout.triangles.data());
+  const auto* const blocks = reinterpret_cast<const Block*>(layout.triangles.data());
+  const BoxTest<W> test(ray);
   StackEntry* top = stack;
   std::uint32_t word = layout.root;
   alignas(64) float entry[W];
   for (;;) {
-    if (word & layouts::kLeafBit) {
-      const Block* block = blocks + layouts::leaf_first(word);
-      const Block* const end = block + layouts::leaf_blocks(word);
-      if constexpr (kCount) {
-        ++counts->leaves;
-        for (const Block* b = block; b != end; ++b)
-          for (std::uint32_t id : b->primitive) counts->primitives += id != layouts::kInvalidPrimitive;
-      }
-      for (; block != end; ++block) {
-        if constexpr (kRobust)
-          Leaf::template robust<kAny>(*block, ray, best);
-        else
-          Leaf::fast(*block, ray, best);
-        if (kAny && best.block) return true;
-      }
-    } else {
+    std::uint32_t hit = 1;
+    while (!(word & layouts::kLeafBit)) {
       const WideNode<W>& node = nodes[word];
       if constexpr (kCount) ++counts->nodes;
-      const std::uint32_t hit = test_boxes<W>(node, ray, best.t, entry);
-      if (hit) {
-        word = push_children<W, kAny>(node, hit, entry, top);
-        continue;
-      }
+      hit = test(node, best.t, entry);
+      if (!hit) break;
+      word = push_children<W, kAny>(node, hit, entry, top);
+    }
+    if (hit) {
+      const Block* const block = blocks + layouts::leaf_first(word);
+      const Block* const end = block + layouts::leaf_blocks(word);
+      if constexpr (kCount) count_leaf(block, end, *counts);
+      test_leaf<Leaf, kRobust, kAny>(block, end, ray, best);
+      if (kAny && best.block) return true;
     }
     do {
       if (top == stack) return best.block != nullptr;

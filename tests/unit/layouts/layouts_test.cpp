@@ -21,9 +21,9 @@ tree::BinaryTree build_tree(const MeshView& mesh, const char* builder = "binned-
 
 Result<Layout> encode(LayoutId id, const tree::BinaryTree& tree, const MeshView& mesh) {
   if (id == LayoutId::linear) return encode_linear(tree, mesh, executor);
-  auto wide = optimizers::collapse_to_wide(tree, {.width = id == LayoutId::wide4 ? 4 : 8}, executor);
+  auto wide = optimizers::collapse_to_wide(tree, {.width = width(id)}, executor);
   EXPECT_TRUE(wide) << wide.error().message;
-  if (id == LayoutId::wide8_quads) return encode_wide_quads(*wide, mesh, executor);
+  if (has_quads(id)) return encode_wide_quads(*wide, mesh, executor);
   return encode_wide(*wide, mesh, executor);
 }
 
@@ -80,11 +80,13 @@ TEST(Layouts, CheckerFindsCorruption) {
       expect_found([](Layout& l) { reinterpret_cast<LinearNode*>(l.nodes.data())[0].offset = 1 << 29; },
                    "past the array");
       expect_found([](Layout& l) { reinterpret_cast<LinearNode*>(l.nodes.data())[0].offset = 0; }, "does not follow");
-    } else if (row.id == LayoutId::wide8) {
-      expect_found(
-          [](Layout& l) { reinterpret_cast<WideNode<8>*>(l.nodes.data())[0].child[0] = leaf_word(1 << 27, 1); },
-          "past the blocks");
-      expect_found([](Layout& l) { reinterpret_cast<WideNode<8>*>(l.nodes.data())[0].child[0] = 0; }, "before it");
+    } else if (row.id == LayoutId::wide8 || row.id == LayoutId::wide16) {
+      const auto children = [&](Layout& l) {
+        return row.id == LayoutId::wide8 ? reinterpret_cast<WideNode<8>*>(l.nodes.data())[0].child
+                                         : reinterpret_cast<WideNode<16>*>(l.nodes.data())[0].child;
+      };
+      expect_found([&](Layout& l) { children(l)[0] = leaf_word(1 << 27, 1); }, "past the blocks");
+      expect_found([&](Layout& l) { children(l)[0] = 0; }, "before it");
       expect_found([](Layout& l) { reinterpret_cast<TriangleBlock*>(l.triangles.data())[0].primitive[0] = 5000; },
                    "past the mesh");
       expect_found(

@@ -1,0 +1,40 @@
+// The split finder over pairs of references: binned as if a pair were one reference, and exact for the last few.
+#pragma once
+
+#include <span>
+
+#include "builders/parts/binned_finder.h"
+#include "builders/parts/edge_pairs.h"
+
+namespace boxwood::builders {
+
+class PairFinder : public BinnedSahFinder {
+ public:
+  /// `ranges` are over the pairs of `pairs`; a driver with two nodes for each reference and two ids for
+  /// each pair is to be used.
+  PairFinder(ReferenceRanges& ranges, const BuildRange& root, const EdgePairs& pairs,
+             std::span<const refs::Reference> references, const tree::CostModel& cost, std::uint32_t leaf_max);
+
+  bool finishes(const BuildRange& range) const { return range.size() <= kFew; }
+  /// The cheapest of all trees over a few pairs; one leaf over more.
+  void finish(const BuildRange& range, tree::Node* nodes, std::uint32_t* ids) const;
+
+ private:
+  /// So many have few enough trees to try all.
+  static constexpr std::uint32_t kFew = 4;
+
+  class FewPairs;
+
+  /// References lie far apart by now, and mostly one need not look at them.
+  std::uint32_t primitive(std::uint32_t reference) const {
+    return numbered_ ? reference : references_[reference].primitive;
+  }
+
+  std::span<const ReferencePair> pairs_;
+  std::span<const refs::Reference> references_;
+  bool numbered_;
+  float traversal_, intersection_;
+  std::uint32_t leaf_max_;
+};
+
+}  // namespace boxwood::builders
