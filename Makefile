@@ -35,8 +35,8 @@ test: dependencies  ## build everything and run every test
 	$(call TEST,$(PRESET))
 
 bench: override PRESET = release
-bench: build  ## measure all builders on three scenes, beside Embree when it is installed
-	@tools/bench.sh build/release/bin/boxwood out
+bench: build  ## measure all builders beside all rivals installed, and the duel with Embree; MESHES="a.ply ..." adds yours
+	@tools/bench.sh build/release/bin/boxwood out $(MESHES)
 
 MEASURING = micro_benchmarks check_leaks check_agreement
 measuring: dependencies  ## build the measuring programs: build/release/bin/{micro_benchmarks,check_leaks,check_agreement}

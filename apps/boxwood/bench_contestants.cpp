@@ -16,10 +16,10 @@ struct Own {
   std::vector<std::shared_ptr<const Accel>> accels;    // per layout
 };
 struct Rival {
-  rivals::EmbreeQuality quality;
+  const rivals::RivalInfo* info;
   queries::Mode mode;
   std::shared_ptr<BuildFigures> figures;
-  std::shared_ptr<const rivals::EmbreeRival> embree;
+  std::shared_ptr<const rivals::Rival> rival;
 };
 
 std::shared_ptr<BuildFigures> make_figures(const BenchPlan& plan) {
@@ -79,13 +79,13 @@ bool is_long_build(const Own& own, std::size_t thread_index) {
 }
 
 Status build_rival(Rival& rival, const BenchPlan& plan, const Input& input, std::size_t thread_index) {
-  auto embree = rivals::EmbreeRival::open(input.mesh, rival.quality, rival.mode == queries::Mode::robust);
-  if (!embree) return embree.error();
-  const auto seconds = embree->build(plan.thread_counts[thread_index]);
+  auto opened = rivals::open(input.mesh, rival.info->id, rival.mode == queries::Mode::robust);
+  if (!opened) return opened.error();
+  const auto seconds = (*opened)->build(plan.thread_counts[thread_index]);
   if (!seconds) return seconds.error();
   rival.figures->milliseconds[thread_index].push_back(1e3 * *seconds);
-  rival.figures->bytes = embree->bytes();
-  if (!rival.embree) rival.embree = std::make_shared<const rivals::EmbreeRival>(std::move(*embree));
+  rival.figures->bytes = (*opened)->bytes();
+  if (!rival.rival) rival.rival = std::move(*opened);
   return {};
 }
 
@@ -100,8 +100,18 @@ std::vector<Contestant> list_contestants(const BenchPlan& plan, const std::vecto
             contestants.push_back({o.name, o.tree.presplit.text(), o.tree.optimizer.text(), plan.layouts[i], mode,
                                    o.figures[i], o.accels[i], nullptr, traversal});
   for (const Rival& r : rivals)
-    contestants.push_back(
-        {std::string("embree:") + rivals::name(r.quality), "", "", "embree", r.mode, r.figures, nullptr, r.embree, {}});
+    for (const RivalChoice& choice : plan.rivals)
+      if (choice.rival == r.info)
+        contestants.push_back({choice.id(),
+                               "",
+                               "",
+                               std::string(choice.rival->id, choice.id().find(':')),
+                               r.mode,
+                               r.figures,
+                               nullptr,
+                               r.rival,
+                               {},
+                               choice.calls});
   return contestants;
 }
 
@@ -141,7 +151,12 @@ Result<std::vector<Contestant>> build_contestants(const BenchPlan& plan, const I
       }
   std::vector<Rival> rivals;
   for (const RivalChoice& choice : plan.rivals)
-    for (const queries::Mode mode : plan.modes) rivals.push_back({choice.quality, mode, make_figures(plan), nullptr});
+    for (const queries::Mode mode : plan.modes) {
+      const bool is_there = std::any_of(rivals.begin(), rivals.end(),
+                                        [&](const Rival& r) { return r.info == choice.rival && r.mode == mode; });
+      if (!is_there && (mode == queries::Mode::fast || choice.rival->has_robust))
+        rivals.push_back({choice.rival, mode, make_figures(plan), nullptr});
+    }
 
   const auto steps = static_cast<double>(plan.repeat) * static_cast<double>(plan.thread_counts.size()) *
                      static_cast<double>(own.size() + rivals.size());
@@ -156,7 +171,7 @@ Result<std::vector<Contestant>> build_contestants(const BenchPlan& plan, const I
         progress.update(++done / steps);
       }
       for (Rival& r : rivals) {
-        progress.label(fmt::format("{}: building embree:{}", input.mesh.name, rivals::name(r.quality)));
+        progress.label(fmt::format("{}: building {}", input.mesh.name, r.info->id));
         if (Status status = build_rival(r, plan, input, t); !status) return status.error();
         progress.update(++done / steps);
       }

@@ -10,6 +10,7 @@
 #include "bench_rays.h"
 #include "bench_report.h"
 #include "boxwood/io.h"
+#include "camera_file.h"
 #include "commands.h"
 #include "pipeline.h"
 #include "text.h"
@@ -139,26 +140,15 @@ Status add_kinds(const BenchOptions& options, BenchPlan& plan) {
 }
 
 Status add_rivals(const BenchOptions& options, BenchPlan& plan) {
-  using rivals::EmbreeQuality;
   for (const std::string& word : options.rivals) {
-    bool is_known = false;
-    for (const EmbreeQuality quality : {EmbreeQuality::medium, EmbreeQuality::high, EmbreeQuality::low}) {
-      const std::string id = std::string("embree:") + rivals::name(quality);
-      if (word != "embree" && word != id) continue;
-      is_known = true;
-      plan.rivals.push_back({quality});
-    }
-    if (!is_known && !word.starts_with("embree"))
-      return {ErrorCode::unknown_name,
-              fmt::format("there is no rival '{}'; there is embree, or one of embree:low, embree:medium, embree:high",
-                          word)};
-    const auto version = rivals::embree_version();
-    if (!version) return version.error();
-    plan.rival_version = *version;
-    if (!is_known)
-      return {ErrorCode::unknown_name,
-              fmt::format("there is no rival '{}'; Embree's qualities are low, medium and high", word)};
+    const auto choices = find_rivals(word);
+    if (!choices) return choices.error();
+    for (const RivalChoice& choice : *choices) plan.rivals.push_back(choice);
   }
+  drop_repeats(plan.rivals, std::equal_to<>());
+  const auto versions = rival_versions(plan.rivals);
+  if (!versions) return versions.error();
+  plan.rival_version = *versions;
   return {};
 }
 
@@ -172,13 +162,12 @@ Result<BenchPlan> make_plan(const BenchOptions& options, const Session& session)
   drop_repeats(plan.layouts, std::equal_to<>());
   drop_repeats(plan.modes, std::equal_to<>());
   drop_repeats(plan.kinds, std::equal_to<>());
-  drop_repeats(plan.rivals, [](const RivalChoice& a, const RivalChoice& b) { return a.quality == b.quality; });
   const auto size = parse_size(options.size);
   if (!size) return size.error();
   std::tie(plan.width, plan.height) = *size;
   plan.random_rays = options.random_rays ? options.random_rays
                                          : static_cast<std::size_t>(plan.width) * static_cast<std::size_t>(plan.height);
-  if (!options.camera.empty()) {
+  if (!options.camera.empty() && !is_camera_file(options.camera)) {
     const auto camera = parse_camera(options.camera);
     if (!camera) return camera.error();
     plan.camera = *camera;
@@ -188,6 +177,14 @@ Result<BenchPlan> make_plan(const BenchOptions& options, const Session& session)
   plan.thread_counts.push_back(1);
   if (session.threads() > 1) plan.thread_counts.push_back(session.threads());
   return plan;
+}
+
+Result<Input> load_bench_input(const std::string& text, const BenchOptions& options, const Session& session) {
+  auto input = load_usable_input(text, options.input_options, session);
+  if (!input) return input;
+  for (const std::string& path : {options.cameras, is_camera_file(options.camera) ? options.camera : std::string()})
+    if (Status status = apply_camera_file(path, *input, session); !status) return status.error();
+  return input;
 }
 
 Result<BenchPlan> fitted_plan(const BenchPlan& plan, const BenchOptions& options, const Input& input,
@@ -268,8 +265,7 @@ Json plan_json(const BenchPlan& plan) {
   json["rays"] = Json::array();
   for (const RayKind kind : plan.kinds) json["rays"].push_back(name(kind));
   json["rivals"] = Json::array();
-  for (const RivalChoice& rival : plan.rivals)
-    json["rivals"].push_back(std::string("embree:") + rivals::name(rival.quality));
+  for (const RivalChoice& rival : plan.rivals) json["rivals"].push_back(rival.id());
   json["size"] = fmt::format("{}x{}", plan.width, plan.height);
   json["random_rays"] = plan.random_rays;
   json["repeat"] = plan.repeat;
@@ -295,8 +291,12 @@ void note_plan(const BenchPlan& plan, const std::string& isa, const Session& ses
   if (plan.optimizers.size() == 1 && !plan.optimizers[0].empty())
     session.note("  optimizer after each: {}\n", plan.optimizers[0]);
   if (!plan.rivals.empty())
-    session.note("  rival: {}, rtcIntersect1 and rtcOccluded1 in a loop; fast = default scene flags, robust = ROBUST\n",
+    session.note("  rivals: {}; one call per ray unless :packets; fast = their default mode, robust = theirs\n",
                  plan.rival_version);
+  for (const RivalChoice& choice : plan.rivals)
+    if (!choice.rival->has_robust &&
+        std::find(plan.modes.begin(), plan.modes.end(), queries::Mode::fast) == plan.modes.end())
+      session.warn(fmt::format("{} has no robust mode, so it is left out; --modes fast measures it", choice.id()));
 }
 
 Status write_csv(const BenchOptions& options, const Json& rows) {
@@ -322,7 +322,8 @@ void BenchOptions::add_to(CLI::App& command) {
   add_list(command, "--modes", modes, "robust (the default), fast");
   add_list(command, "--rays", kinds, "primary, random, diffuse, occlusion (these by default), lines");
   add_size_option(command, size);
-  add_camera_option(command, camera);
+  add_camera_option(command, camera, true);
+  add_cameras_option(command, cameras);
   command.add_option("--random-rays", random_rays, "How many random rays and lines (default: as many as pixels)")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 28).description(""))
       ->type_name("N");
@@ -335,13 +336,6 @@ void BenchOptions::add_to(CLI::App& command) {
       ->capture_default_str();
   command.add_option("--csv", csv, "Write the rows as CSV to FILE, or '-' for standard output")->type_name("FILE");
   common.add_to(command);
-}
-
-Spread spread_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  if (n == 0) return {};
-  return {n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]), values.front(), values.back()};
 }
 
 const char* name(RayKind kind) {

@@ -15,7 +15,7 @@ struct BenchOptions {
   std::vector<std::string> inputs, presplits, optimizers;
   std::vector<std::string> builders{"all"}, layouts{queries::default_layout()}, modes{"robust"}, rivals, settings;
   std::vector<std::string> kinds{"primary", "random", "diffuse", "occlusion"}, traversals{"single"};
-  std::string camera, size = "1024x1024", csv;
+  std::string camera, cameras, size = "1024x1024", csv;
   int repeat = 3;
   std::uint64_t random_rays = 0, seed = 1;
   std::uint32_t packet_size = queries::TraversalOptions{}.packet_size;
@@ -24,6 +24,9 @@ struct BenchOptions {
   /// Those that every benchmark has: INPUT, builders, rays, repeats, --csv and the common ones.
   void add_to(CLI::App& command);
 };
+
+/// The INPUT with the camera that --cameras has for it.
+Result<Input> load_bench_input(const std::string& text, const BenchOptions& options, const Session& session);
 
 /// One word or several with commas, each time the option is given.
 void add_list(CLI::App& command, const std::string& flag, std::vector<std::string>& list, const char* help);

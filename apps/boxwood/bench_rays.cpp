@@ -30,9 +30,9 @@ Result<double> trace(const Contestant& contestant, const RaySet& set, BenchExecu
   Status status;
   if (contestant.is_rival()) {
     if (any)
-      contestant.embree->any_hits(set.rays, answers.occluded, *executors.chosen);
+      contestant.rival->any_hits(set.rays, answers.occluded, contestant.calls, *executors.chosen);
     else
-      contestant.embree->closest_hits(set.rays, answers.hits, *executors.chosen);
+      contestant.rival->closest_hits(set.rays, answers.hits, contestant.calls, *executors.chosen);
   } else {
     status = any ? contestant.accel->any_hits(set.rays, answers.occluded, contestant.mode, contestant.traversal)
                  : contestant.accel->closest_hits(set.rays, answers.hits, {}, contestant.mode, contestant.traversal);
@@ -105,19 +105,20 @@ Result<Row> prepare(const Contestant& contestant, const RaySet& set, BenchExecut
   const auto warm_up = trace(contestant, set, executors, answers);
   if (!warm_up) return warm_up.error();
   row.hits = answers.hit_count();
+  row.seconds.push_back(*warm_up);
   if (reference_answers)
     compare(answers, *reference_answers, fmt::format("{} {}", reference.builder, reference.layout), row);
   return row;
 }
 
-/// Fills in Mrays/s over the first rival of the same mode and thread count.
+/// Times over those of the first rival of the same mode and thread count, round by round.
 void set_ratios(std::vector<Row>& rows) {
   for (Row& row : rows) {
     const auto rival = std::find_if(rows.begin(), rows.end(), [&](const Row& other) {
       return other.contestant->is_rival() && other.contestant->mode == row.contestant->mode &&
              other.thread_index == row.thread_index;
     });
-    if (rival != rows.end() && rival->mrays.median > 0) row.ratio = row.mrays.median / rival->mrays.median;
+    if (rival != rows.end()) row.ratio = spread_of(ratios(rival->seconds, row.seconds));
   }
 }
 
@@ -176,19 +177,23 @@ Result<std::vector<Row>> measure(const BenchPlan& plan, const RaySet& set, const
     for (std::size_t t = 0; t < thread_counts; ++t) rows.push_back(*row), rows.back().thread_index = t;
   }
 
-  std::vector<std::vector<double>> mrays(rows.size());
-  for (int repeat = 0; repeat < plan.repeat; ++repeat) {
-    for (std::size_t t = 0; t < thread_counts; ++t) {
-      executors.choose(t);
-      for (std::size_t r = t; r < rows.size(); r += thread_counts) {
-        const auto seconds = trace(*rows[r].contestant, set, executors, answers);
-        if (!seconds) return seconds.error();
-        mrays[r].push_back(1e-6 * static_cast<double>(set.rays.size()) / std::max(*seconds, 1e-9));
-      }
-    }
-    progress.update(static_cast<double>(repeat + 1) / plan.repeat);
+  // The warm-up ran with all threads; with one it takes up to that many times as long, which only makes passes longer.
+  std::vector<TimedCell> cells;
+  for (const Row& row : rows) {
+    const auto run = [&, contestant = row.contestant] { return trace(*contestant, set, executors, answers); };
+    cells.push_back({run, [&executors, t = row.thread_index] { executors.choose(t); },
+                     plan.thread_counts[row.thread_index], row.seconds[0]});
   }
-  for (std::size_t r = 0; r < rows.size(); ++r) rows[r].mrays = spread_of(mrays[r]);
+  const Status status = measure_in_turns(cells, plan.repeat, [&](double share) { progress.update(share); });
+  if (!status) return status.error();
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    std::vector<double> mrays;
+    for (const double seconds : cells[r].seconds)
+      mrays.push_back(1e-6 * static_cast<double>(set.rays.size()) / std::max(seconds, 1e-12));
+    rows[r].mrays = spread_of(mrays);
+    rows[r].repeated = cells[r].repeated, rows[r].disturbed = cells[r].disturbed;
+    rows[r].seconds = std::move(cells[r].seconds);
+  }
   set_ratios(rows);
   return rows;
 }

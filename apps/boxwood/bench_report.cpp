@@ -110,7 +110,8 @@ std::string kind_table(const BenchPlan& plan, const BenchResult& result, const R
   for (const int threads : plan.thread_counts) {
     const std::string group = "Mrays/s, " + thread_word(threads);
     for (const char* head : {"median", "min", "max"}) table.column(head, Align::right, group);
-    if (has_rivals) table.column("ratio", Align::right, group);
+    if (has_rivals)
+      for (const char* head : {"ratio", "spread"}) table.column(head, Align::right, group);
   }
   table.column("differ");
   std::vector<std::string> examples;
@@ -126,7 +127,9 @@ std::string kind_table(const BenchPlan& plan, const BenchResult& result, const R
       const Row& row = result.rows[r + t];
       for (const double value : {row.mrays.median, row.mrays.lowest, row.mrays.highest})
         cells.push_back(fmt::format("{:.2f}", value));
-      if (has_rivals) cells.push_back(optional_text(row.ratio, 2));
+      if (!has_rivals) continue;
+      cells.push_back(row.ratio ? fmt::format("{:.2f}", row.ratio->median) : "-");
+      cells.push_back(row.ratio ? fmt::format("{:.2f} to {:.2f}", row.ratio->lowest, row.ratio->highest) : "-");
     }
     cells.push_back(with_thousands(first.disagreements));
     table.row(std::move(cells));
@@ -229,7 +232,11 @@ Json rows_json(const BenchPlan& plan, const BenchResult& result) {
     json["hash"] = c.is_rival() ? Json() : Json(hash_text(c.build->hash));
     json["hits"] = row.hits;
     json["mrays"] = {{"median", row.mrays.median}, {"min", row.mrays.lowest}, {"max", row.mrays.highest}};
-    json["ratio"] = optional_json(row.ratio);
+    json["ratio"] = row.ratio ? Json(row.ratio->median) : Json();
+    json["ratio_min"] = row.ratio ? Json(row.ratio->lowest) : Json();
+    json["ratio_max"] = row.ratio ? Json(row.ratio->highest) : Json();
+    json["passes_repeated"] = row.repeated;
+    json["passes_disturbed"] = row.disturbed;
     json["disagreements"] = row.disagreements;
     json["first_disagreement"] = row.first_disagreement;
     rows.push_back(std::move(json));

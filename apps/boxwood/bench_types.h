@@ -9,18 +9,13 @@
 #include "boxwood/accel.h"
 #include "boxwood/render.h"
 #include "camera.h"
-#include "embree/embree_rival.h"
 #include "input.h"
+#include "rival.h"
 #include "session.h"
+#include "timing.h"
 #include "tree_measures.h"
 
 namespace boxwood::program {
-
-/// Median, smallest and largest of repeated measurements.
-struct Spread {
-  double median = 0, lowest = 0, highest = 0;
-};
-Spread spread_of(std::vector<double> values);
 
 enum class RayKind { primary, random, diffuse, occlusion, lines };
 const char* name(RayKind kind);
@@ -29,9 +24,22 @@ inline bool asks_any(RayKind kind) {
   return kind == RayKind::occlusion;
 }
 
+/// A rival and how it is called.
 struct RivalChoice {
-  rivals::EmbreeQuality quality;
+  const rivals::RivalInfo* rival;
+  rivals::Calls calls = rivals::Calls::single;
+
+  /// "embree:medium", "embree:medium:packets".
+  std::string id() const { return rival->id + std::string(calls == rivals::Calls::packets ? ":packets" : ""); }
+  bool operator==(const RivalChoice& o) const { return rival == o.rival && calls == o.calls; }
 };
+
+/// Those that one word of --rivals means: a library with all its builds called ray by ray, one of these builds, the
+/// same with ":packets", or "all" that are installed. Errors: no such rival, or one that is not installed, in one
+/// sentence.
+Result<std::vector<RivalChoice>> find_rivals(const std::string& word);
+/// "Embree 3.13.5, tinybvh 1.6.7": of the libraries that were chosen, which must be there.
+Result<std::string> rival_versions(const std::vector<RivalChoice>& choices);
 
 /// The checked options of one run.
 struct BenchPlan {
@@ -42,7 +50,7 @@ struct BenchPlan {
   std::vector<queries::TraversalOptions> traversals;  ///< each for the layouts that have it; terminating ones first
   std::vector<RayKind> kinds;
   std::vector<RivalChoice> rivals;
-  std::string rival_version;  ///< "Embree 3.13.5"; empty without rivals
+  std::string rival_version;  ///< as rival_versions gives it; empty without rivals
   std::optional<Camera> camera;
   int width = 0, height = 0;
   std::size_t random_rays = 0;
@@ -82,18 +90,19 @@ struct BuildFigures {
   std::optional<TreeMeasures> measures;
 };
 
-/// One thing that traces: ours (accel) or a rival's (embree).
+/// One thing that traces: ours (accel) or a rival's.
 struct Contestant {
   std::string builder, presplit, optimizer, layout;  ///< the builder or level as it was named
   queries::Mode mode = queries::Mode::robust;
   std::shared_ptr<BuildFigures> build;
   std::shared_ptr<const Accel> accel;
-  std::shared_ptr<const rivals::EmbreeRival> embree;
+  std::shared_ptr<const rivals::Rival> rival;
   queries::TraversalOptions traversal;
+  rivals::Calls calls = rivals::Calls::single;  ///< of a rival
 
   /// Rays that go through the tree together.
   std::size_t packet_size() const;
-  bool is_rival() const { return embree != nullptr; }
+  bool is_rival() const { return rival != nullptr; }
 };
 
 struct RaySet {
@@ -112,7 +121,9 @@ struct Row {
   std::optional<double> nodes_per_ray, packet_nodes_per_ray, primitives_per_ray;
   std::size_t disagreements = 0;
   std::string first_disagreement;
-  std::optional<double> ratio;  ///< Mrays/s over that of the first rival of the same mode
+  std::size_t repeated = 0, disturbed = 0;  ///< as of TimedCell
+  std::vector<double> seconds;              ///< one per round
+  std::optional<Spread> ratio;              ///< over the first rival of the same mode, round by round
 };
 
 /// Everything measured over one input.

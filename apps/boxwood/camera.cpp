@@ -42,10 +42,14 @@ std::string camera_text(const View& view) {
                      vector_text(view.up), view.fov);
 }
 
-void add_camera_option(CLI::App& command, std::string& camera) {
-  command.add_option("--camera", camera, "eye=x:y:z,look_at=x:y:z,up=x:y:z,fov=degrees; what is left out is computed")
+void add_camera_option(CLI::App& command, std::string& camera, bool or_file) {
+  command
+      .add_option("--camera", camera,
+                  std::string("eye=x:y:z,look_at=x:y:z,up=x:y:z,fov=degrees; what is left out is computed") +
+                      (or_file ? ". Or a file as for --cameras" : ""))
       ->type_name("CAMERA")
-      ->check([](const std::string& text) {
+      ->check([or_file](const std::string& text) {
+        if (or_file && is_camera_file(text)) return std::string();
         const auto parsed = parse_camera(text);
         return parsed ? std::string() : parsed.error().message;
       });

@@ -24,7 +24,11 @@ Result<Camera> parse_camera(std::string_view text);
 std::string camera_text(const View& view);
 
 /// Both refuse what they can't read as wrong usage, before anything runs.
-void add_camera_option(CLI::App& command, std::string& camera);
+/// `or_file`: the name of a camera file (camera_file.h) will do as well; is_camera_file tells them apart.
+void add_camera_option(CLI::App& command, std::string& camera, bool or_file = false);
+inline bool is_camera_file(const std::string& camera) {
+  return !camera.empty() && camera.find('=') == std::string::npos;
+}
 void add_size_option(CLI::App& command, std::string& size);
 
 }  // namespace boxwood::program

@@ -28,7 +28,7 @@ Status run_bench(const Options& options) {
   report["inputs"] = Json::array();
   report["rows"] = Json::array();
   for (const std::string& text : options.inputs) {
-    const auto input = load_usable_input(text, options.input_options, session);
+    const auto input = load_bench_input(text, options, session);
     if (!input) return input.error();
     const auto fitted = fitted_plan(*plan, options, *input, session);
     if (!fitted) return fitted.error();
@@ -53,7 +53,9 @@ void add_bench_command(CLI::App& program, Run& run) {
   options->add_to(command);
   add_list(command, "-l,--layouts", options->layouts,
            "linear, wide4, wide8 (the default), wide8-quads, wide16, wide16-quads, or all");
-  add_list(command, "--rivals", options->rivals, "embree, or embree:low, embree:medium, embree:high");
+  add_list(
+      command, "--rivals", options->rivals,
+      "embree, embree:low, embree:medium, embree:high, with :packets behind; tinybvh, madmann; all that are installed");
   command.add_option("--table", options->table, "full, or summary: only the lines that sum it up")
       ->check(CLI::IsMember({"full", "summary"}))
       ->capture_default_str();

@@ -96,7 +96,7 @@ Status run_correlate(const BenchOptions& options) {
   report["options"] = plan_json(*plan);
   for (const char* key : {"inputs", "correlations", "rows"}) report[key] = Json::array();
   for (const std::string& text : options.inputs) {
-    const auto input = load_usable_input(text, options.input_options, session);
+    const auto input = load_bench_input(text, options, session);
     if (!input) return input.error();
     const auto fitted = fitted_plan(*plan, options, *input, session);
     if (!fitted) return fitted.error();

@@ -1,9 +1,9 @@
 // boxwood reproduce: the papers' tables and figures, our values beside theirs.
 #include <ctime>
-#include <fstream>
 
 #include "boxwood/io.h"
 #include "camera.h"
+#include "camera_file.h"
 #include "commands.h"
 #include "reproduce/paper_scenes.h"
 #include "reproduce/tables.h"
@@ -27,44 +27,6 @@ std::string table_list() {
   std::string list;
   for (const TableInfo& table : tables()) list += std::string(list.empty() ? "" : ", ") + table.id;
   return list;
-}
-
-/// The name of a mesh without its ending: what camera files call it.
-std::string stem(const std::string& name) {
-  return name.substr(0, name.rfind('.'));
-}
-
-Result<Vec3> vector_of(const Json& json, const char* key, const std::string& where) {
-  const auto found = json.find(key);
-  if (found == json.end() || !found->is_array() || found->size() != 3 ||
-      !std::all_of(found->begin(), found->end(), [](const Json& v) { return v.is_number(); }))
-    return {ErrorCode::malformed, fmt::format("{}: '{}' must be an array of three numbers", where, key)};
-  return Vec3{(*found)[0].get<float>(), (*found)[1].get<float>(), (*found)[2].get<float>()};
-}
-
-/// Sets the view of every input that the file names.
-Status apply_cameras(const std::string& path, std::vector<std::shared_ptr<const Input>>& inputs) {
-  if (path.empty()) return {};
-  std::ifstream file(path);
-  if (!file) return {ErrorCode::not_found, fmt::format("the camera file '{}' can't be read", path)};
-  const Json cameras = Json::parse(file, nullptr, false);
-  if (!cameras.is_object())
-    return {ErrorCode::malformed, fmt::format("the camera file '{}' is not a JSON object", path)};
-  for (auto& input : inputs) {
-    const auto camera = cameras.find(stem(input->mesh.name));
-    if (camera == cameras.end()) continue;
-    const std::string where = fmt::format("{}, camera '{}'", path, stem(input->mesh.name));
-    auto with_view = std::make_shared<Input>(*input);
-    for (const auto& [key, member] : {std::pair{"eye", &View::eye}, {"look_at", &View::look_at}, {"up", &View::up}}) {
-      const auto value = vector_of(*camera, key, where);
-      if (!value) return value.error();
-      with_view->view.*member = *value;
-    }
-    if (const auto fov = camera->find("fov"); fov != camera->end() && fov->is_number())
-      with_view->view.fov = fov->get<float>();
-    input = std::move(with_view);
-  }
-  return {};
 }
 
 std::string today() {
@@ -119,9 +81,9 @@ Status run_reproduce(Options& options) {
   for (const std::string& text : options.inputs) {
     auto input = load_usable_input(text, options.input, session);
     if (!input) return input.error();
+    if (Status status = apply_camera_file(options.cameras, *input, session); !status) return status;
     inputs.push_back(std::make_shared<Input>(std::move(*input)));
   }
-  if (Status status = apply_cameras(options.cameras, inputs); !status) return status;
 
   session.note("{}\n{}\n", session.environment_line(*isa), command_line(options));
   Json report = session.report(*isa);
@@ -169,11 +131,7 @@ void add_reproduce_command(CLI::App& program, Run& run) {
   command.add_option("INPUT", options->inputs, "Meshes or scenes instead of the procedural stand-ins")->type_name("");
   command.add_flag("--slow", options->effort.slow, "Also the cells that take more than five minutes each");
   add_size_option(command, options->size);
-  command
-      .add_option("--cameras", options->cameras,
-                  "JSON file with a camera by mesh name: {\"bunny\": {\"eye\": [x,y,z], \"look_at\": ..., \"up\": ..., "
-                  "\"fov\": 40}}")
-      ->type_name("FILE");
+  add_cameras_option(command, options->cameras);
   command.add_option("--random-rays", options->random_rays, "How many random rays")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 28).description(""))
       ->type_name("N")

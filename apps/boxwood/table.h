@@ -15,6 +15,8 @@ class Table {
   /// Cells in the order of the columns, as many as there are columns.
   void row(std::vector<std::string> cells);
   std::string text() const;
+  /// As a table of Markdown; a group's word stands before the head.
+  std::string markdown() const;
 
  private:
   struct Column {

@@ -9,18 +9,17 @@
 // when they do not, or when brute force finds a clear hit (1e-6 inside a triangle) that ours does not have.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "agreement.h"
 #include "boxwood/accel.h"
 #include "boxwood/io.h"
 #include "boxwood/render.h"
-#include "embree/embree_rival.h"
+#include "rival.h"
 
 using namespace boxwood;
 
@@ -35,77 +34,6 @@ template <class T>
 T take(Result<T> result) {
   if (!result) fail(result.error().message);
   return std::move(*result);
-}
-
-bool close(double a, double b) {
-  return std::fabs(a - b) <= 1e-5 * std::max(std::fabs(a), std::fabs(b));
-}
-
-/// How a set of hits compares with Embree's, with brute force as the judge of each difference.
-struct Verdicts {
-  std::size_t differences = 0, ours_right = 0, both = 0, border = 0, wrong = 0;
-};
-
-struct Point {
-  double x, y, z;
-};
-Point point(Vec3 a) {
-  return {a.x, a.y, a.z};
-}
-Point operator-(Point a, Point b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-double dot(Point a, Point b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-/// Distance between a ray's line and the segment from a to b.
-double distance_to_edge(const Ray& ray, Point a, Point b) {
-  const Point d = point(ray.direction), e = b - a, w = a - point(ray.origin);
-  const double dd = dot(d, d), de = dot(d, e), ee = dot(e, e), dw = dot(d, w), ew = dot(e, w);
-  const double determinant = dd * ee - de * de;
-  const double s = determinant > 0 ? std::clamp((de * dw - dd * ew) / determinant, 0.0, 1.0) : 0.0;
-  const double t = (dw + s * de) / dd;
-  const Point gap{w.x + s * e.x - t * d.x, w.y + s * e.y - t * d.y, w.z + s * e.z - t * d.z};
-  return std::sqrt(dot(gap, gap));
-}
-
-/// Does the ray pass so near to a border of the triangle that roundings of its coordinates decide? The limit is the one
-/// the box test is widened by (src/queries/ray_setup.h).
-bool on_border(const MeshView& mesh, const Ray& ray, std::uint32_t primitive) {
-  if (primitive == layouts::kInvalidPrimitive) return false;
-  const Triangle t = mesh.triangle(primitive);
-  double largest = 0;
-  for (Vec3 p : {t.v0, t.v1, t.v2, ray.origin})
-    for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::fabs(double(p[axis])));
-  const Point a = point(t.v0), b = point(t.v1), c = point(t.v2);
-  const double nearest =
-      std::min({distance_to_edge(ray, a, b), distance_to_edge(ray, b, c), distance_to_edge(ray, c, a)});
-  return nearest <= 24 * 0x1p-24 * largest;
-}
-
-// Lets brute force decide who is right about one ray.
-void judge(const MeshView& mesh, const Ray& ray, const Hit& ours, const Hit& theirs, Verdicts& v) {
-  ++v.differences;
-  const auto exact = queries::brute_force_closest(mesh, ray);
-  auto agrees = [&](const Hit& hit) {
-    if (!hit || exact.primitive == layouts::kInvalidPrimitive)
-      return !hit && exact.primitive == layouts::kInvalidPrimitive;
-    return hit.primitive == exact.primitive || close(hit.t, exact.t);
-  };
-  const bool we = agrees(ours), they = agrees(theirs);
-  const bool border = on_border(mesh, ray, ours.primitive) || on_border(mesh, ray, exact.primitive);
-  if (we && they)
-    ++v.both;
-  else if (we)
-    ++v.ours_right;
-  else if (border)
-    ++v.border;
-  else
-    ++v.wrong;
-  if (!we && !border)
-    fmt::print("  clear disagreement: ours t {} primitive {}, Embree t {} primitive {}, exact t {} primitive {}\n",
-               ours.t, ours.primitive, theirs.t, theirs.primitive, exact.t, exact.primitive);
 }
 
 View parse_camera(const std::string& text) {
@@ -165,25 +93,18 @@ std::size_t check(const std::string& path, const Options& options, const std::st
   fmt::print("{}: {} triangles, {} combinations, {} of {} ray sets bit-identical\n", mesh.name, mesh.triangles.size(),
              combinations, same, 2 * combinations);
   for (const bool robust : {true, false}) {
-    auto embree = rivals::EmbreeRival::open(mesh, rivals::EmbreeQuality::medium, robust);
-    if (!embree) fail(embree.error().message);
+    auto embree = take(rivals::open(mesh, "embree:medium", robust));
     (void)take(embree->build(executor->threads()));
     for (const Set& set : sets) {
       std::vector<Hit> theirs(set.rays.size());
-      embree->closest_hits(set.rays, theirs, *executor);
-      std::size_t hits = 0;
-      Verdicts v;
-      for (std::size_t i = 0; i < theirs.size(); ++i) {
-        const Hit &a = set.first[i], &b = theirs[i];
-        hits += a.is_hit();
-        const bool agree = a.is_hit() == b.is_hit() && (!a || a.primitive == b.primitive || close(a.t, b.t));
-        if (!agree) judge(mesh, set.rays[i], a, b, v);
-      }
+      embree->closest_hits(set.rays, theirs, rivals::Calls::single, *executor);
+      const rivals::Verdicts v = rivals::compare_closest(mesh, set.rays, set.first, theirs, *executor);
       fmt::print(
           "  {:<8} against Embree {:<8} {:>8} rays, {:>8} hits, {:>3} differ: brute force sides with ours {}, with "
           "both {}, a border decides {}, ours wrong {}\n",
-          set.name, robust ? "ROBUST:" : "default:", theirs.size(), hits, v.differences, v.ours_right, v.both, v.border,
+          set.name, robust ? "ROBUST:" : "default:", v.rays, v.hits, v.differences, v.ours_right, v.both, v.border,
           v.wrong);
+      if (v.wrong) fmt::print("  clear disagreement: {}\n", v.first_wrong);
       failures += v.wrong;
     }
   }

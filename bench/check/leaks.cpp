@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "boxwood/accel.h"
-#include "embree/embree_rival.h"
+#include "rival.h"
 #include "support/meshes.h"
 
 using namespace boxwood;
@@ -59,9 +59,9 @@ std::size_t check(const Placement& placement, const TriangleMesh& mesh, test::Ai
     }
   ThreadExecutor executor;
   for (const bool robust : {false, true}) {
-    auto embree = rivals::EmbreeRival::open(mesh, rivals::EmbreeQuality::medium, robust);
-    if (!embree || !embree->build(executor.threads())) continue;
-    embree->closest_hits(rays, hits, executor);
+    auto embree = rivals::open(mesh, "embree:medium", robust);
+    if (!embree || !(*embree)->build(executor.threads())) continue;
+    (*embree)->closest_hits(rays, hits, rivals::Calls::single, executor);
     print_row(placement, aim_name, robust ? "Embree ROBUST" : "Embree default", count, count_misses(hits));
   }
   return lost_by_robust;
@@ -84,7 +84,7 @@ int main(int argc, char** argv) {
       return 2;
     }
   }
-  const auto version = rivals::embree_version();
+  const auto version = rivals::libraries()[0].version();
   fmt::print("boxwood {}, {}\n", boxwood::version(), version ? *version : version.error().message);
   const Placement placements[] = {
       {"at the origin", 1, {}}, {"100 radii away", 1, {100, 0, 0}}, {"scaled by 1e-4", 1e-4f, {}}};
