@@ -121,6 +121,20 @@ Result<Layout> encode_wide_quads(const tree::WideTree& tree, const MeshView& mes
 /// Blocks that a leaf over these references takes in `wide8-quads`; above 32 references, leaves of 32 each.
 std::uint32_t quad_blocks(std::span<const std::uint32_t> references, const MeshView& mesh);
 
+/// What a layout was made of, as far as it still holds it. A reference's box is not kept: where the tree splits
+/// references it is the part of the triangle inside the leaf's box.
+struct Decoded {
+  tree::WideTree tree;              ///< of width 2 (`linear`), 4 or 8; nodes and children as they stand in the layout
+  std::vector<Triangle> triangles;  ///< by primitive id up to the largest one; zeros where the tree has none
+
+  /// The triangles as a mesh without shared vertices, to encode from. It looks into this object.
+  MeshView mesh() const { return {triangles.data(), 3 * triangles.size(), nullptr, triangles.size()}; }
+};
+
+/// Turns any layout back into a tree and triangles, with the mesh's exact corners; encoding these gives the same layout
+/// again, up to the order of children. Error: out of memory. O(nodes + triangles).
+Result<Decoded> decode(const Layout& layout);
+
 /// Walks the encoded tree and gives the first contradiction as an error: every child box holds all triangles below it
 /// (meets them, when references are split), every word points inside the arrays, every reference is found exactly as
 /// often as in `references`, those of the binary tree (when references are split: at least once and at most as often),
