@@ -18,6 +18,7 @@ void add_build_command(CLI::App& program, Run& run);
 void add_subdivide_command(CLI::App& program, Run& run);
 void add_trace_command(CLI::App& program, Run& run);
 void add_bench_command(CLI::App& program, Run& run);
+void add_tune_command(CLI::App& program, Run& run);
 void add_correlate_command(CLI::App& program, Run& run);
 void add_render_command(CLI::App& program, Run& run);
 void add_reproduce_command(CLI::App& program, Run& run);

@@ -64,6 +64,7 @@ int run_program(int argc, char** argv) {
   program::add_subdivide_command(app, run);
   program::add_trace_command(app, run);
   program::add_bench_command(app, run);
+  program::add_tune_command(app, run);
   program::add_correlate_command(app, run);
   program::add_render_command(app, run);
   program::add_reproduce_command(app, run);

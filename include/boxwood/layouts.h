@@ -135,6 +135,18 @@ struct Decoded {
 /// again, up to the order of children. Error: out of memory. O(nodes + triangles).
 Result<Decoded> decode(const Layout& layout);
 
+/// Where nodes and children of a wide layout go.
+struct Arrangement {
+  std::vector<std::uint32_t> nodes;  ///< by new place, the old number; the root stays first, all parents before children
+  std::vector<std::uint8_t> lanes;   ///< width for each node, by old number: the old lanes in their new order, used first
+};
+
+/// The same tree in another order: any-hit queries take the children of a node as they stand, closest-hit queries by
+/// distance, and nodes that are visited one after the other are best side by side. Hits stay the same. Leaves follow
+/// their nodes. Errors: the layout `linear`, an arrangement of another size, out of memory; that it is a permutation is
+/// the caller's part.
+Result<Layout> arrange(const Layout& layout, const Arrangement& arrangement);
+
 /// Walks the encoded tree and gives the first contradiction as an error: every child box holds all triangles below it
 /// (meets them, when references are split), every word points inside the arrays, every reference is found exactly as
 /// often as in `references`, those of the binary tree (when references are split: at least once and at most as often),
