@@ -1,11 +1,10 @@
 // boxwood tune: which builder, options, pre-split and layout trace these rays fastest, found by trying.
 #include <algorithm>
-#include <optional>
 
-#include "boxwood/io.h"
 #include "boxwood/render.h"
 #include "camera.h"
 #include "commands.h"
+#include "ray_file.h"
 #include "table.h"
 #include "text.h"
 #include "tune_search.h"
@@ -145,7 +144,7 @@ Status run_tune(const Options& options) {
   if (!isa) return isa.error();
   TuneRaySets rays;
   if (is_file(options.rays)) {
-    const auto read = io::read_rays(options.rays);
+    const auto read = read_ray_file(options.rays);
     if (!read) return read.error();
     if (read->size() < 2)
       return {ErrorCode::invalid_argument,
