@@ -8,11 +8,10 @@
 namespace boxwood::program {
 namespace {
 
-/// A builder behind a pre-split with its layouts, or a rival with its modes: what is built in one go, then traced by
-/// several contestants.
+/// A tree with its layouts, or a rival with its modes: what is built in one go, then traced by several contestants.
 struct Own {
-  const builders::BuildOptions* options;
-  const refs::Presplit* presplit;
+  std::string name;  // of the builder or quality level
+  TreePlan tree;
   std::vector<std::shared_ptr<BuildFigures>> figures;  // per layout
   std::vector<std::shared_ptr<const Accel>> accels;    // per layout
 };
@@ -42,33 +41,32 @@ void describe(BuildFigures& figures, const tree::BinaryTree& tree, const Accel& 
   figures.hash = tree::hash(tree);
 }
 
-Status build_own(Own& own, const BenchPlan& plan, const Input& input, std::size_t thread_index,
+Status build_own(Own& own, bool is_first_tree, const BenchPlan& plan, const Input& input, std::size_t thread_index,
                  BenchExecutors& executors, const Session& session) {
   executors.choose(thread_index);
-  const auto built = build_tree(input.mesh, *own.presplit, *own.options, *executors.chosen);
+  TreeReport report;
+  const auto built = build_tree(input.mesh, own.tree, {*executors.chosen}, &report);
   if (!built) return built.error();
   const bool is_first = own.accels.empty();
-  if (is_first)
-    warn_excluded(input, own.options == &plan.builders[0] && own.presplit == &plan.presplits[0] ? built->excluded : 0,
-                  session);
-  const auto resolved = builders::resolve_options(own.options->builder, own.options->settings);
+  if (is_first && is_first_tree) warn_excluded(input, report.excluded, session);
+  const auto resolved = builders::resolve_options(own.tree.build.builder, own.tree.build.settings);
   if (!resolved) return resolved.error();
   for (std::size_t i = 0; i < plan.layouts.size(); ++i) {
-    auto encoded = encode_tree(input.mesh, built->tree, plan.layouts[i], executors.chosen);
+    auto encoded = encode_tree(input.mesh, *built, plan.layouts[i], executors.chosen);
     if (!encoded) return encoded.error();
     BuildFigures& figures = *own.figures[i];
-    figures.milliseconds[thread_index].push_back(1e3 * (built->seconds() + encoded->encode_seconds));
+    figures.milliseconds[thread_index].push_back(1e3 * (report.seconds() + encoded->encode_seconds));
     if (is_first) {
-      describe(figures, built->tree, encoded->accel, resolved->cost());
+      describe(figures, *built, encoded->accel, resolved->cost());
       if (plan.measures_trees)
-        figures.measures = i > 0 ? own.figures[0]->measures
-                                 : measure_tree(built->tree, input.mesh, resolved->cost(), 0, *executors.chosen);
+        figures.measures =
+            i > 0 ? own.figures[0]->measures : measure_tree(*built, input.mesh, resolved->cost(), 0, *executors.chosen);
       own.accels.push_back(std::make_shared<const Accel>(std::move(encoded->accel)));
     }
   }
-  if (tree::hash(built->tree) != own.figures[0]->hash)
-    return {ErrorCode::malformed, fmt::format("{} built a different tree over {} with {} threads than before",
-                                              own.options->builder, input.mesh.name, plan.thread_counts[thread_index])};
+  if (tree::hash(*built) != own.figures[0]->hash)
+    return {ErrorCode::malformed, fmt::format("{} built a different tree over {} with {} threads than before", own.name,
+                                              input.mesh.name, plan.thread_counts[thread_index])};
   return {};
 }
 
@@ -99,11 +97,11 @@ std::vector<Contestant> list_contestants(const BenchPlan& plan, const std::vecto
       for (const queries::Mode mode : plan.modes)
         for (const queries::TraversalOptions& traversal : plan.traversals)
           if (queries::check_traversal(o.accels[i]->layout().id, traversal))
-            contestants.push_back({o.options->builder, o.presplit->text(), plan.layouts[i], mode, o.figures[i],
-                                   o.accels[i], nullptr, traversal});
+            contestants.push_back({o.name, o.tree.presplit.text(), o.tree.optimizer.text(), plan.layouts[i], mode,
+                                   o.figures[i], o.accels[i], nullptr, traversal});
   for (const Rival& r : rivals)
     contestants.push_back(
-        {std::string("embree:") + rivals::name(r.quality), "", "embree", r.mode, r.figures, nullptr, r.embree, {}});
+        {std::string("embree:") + rivals::name(r.quality), "", "", "embree", r.mode, r.figures, nullptr, r.embree, {}});
   return contestants;
 }
 
@@ -130,12 +128,14 @@ BenchExecutors make_executors(const BenchPlan& plan, const Session& session) {
 Result<std::vector<Contestant>> build_contestants(const BenchPlan& plan, const Input& input, BenchExecutors& executors,
                                                   const Session& session, Progress& progress) {
   std::vector<Own> own;
-  for (const auto& options : plan.builders) {
-    for (const auto& presplit : plan.presplits) {
-      own.push_back({&options, &presplit, {}, {}});
-      for (std::size_t i = 0; i < plan.layouts.size(); ++i) own.back().figures.push_back(make_figures(plan));
-    }
-  }
+  for (const auto& options : plan.builders)
+    for (const std::string& presplit : plan.presplits)
+      for (const std::string& optimizer : plan.optimizers) {
+        auto tree = plan_tree(options, presplit, optimizer);
+        if (!tree) return tree.error();
+        own.push_back({options.builder, std::move(*tree), {}, {}});
+        for (std::size_t i = 0; i < plan.layouts.size(); ++i) own.back().figures.push_back(make_figures(plan));
+      }
   std::vector<Rival> rivals;
   for (const RivalChoice& choice : plan.rivals)
     for (const queries::Mode mode : plan.modes) rivals.push_back({choice.quality, mode, make_figures(plan), nullptr});
@@ -146,9 +146,10 @@ Result<std::vector<Contestant>> build_contestants(const BenchPlan& plan, const I
   for (int repeat = 0; repeat < plan.repeat; ++repeat) {
     for (std::size_t t = 0; t < plan.thread_counts.size(); ++t) {
       for (Own& o : own) {
-        progress.label(fmt::format("{}: building {}", input.mesh.name, o.options->builder));
+        progress.label(fmt::format("{}: building {}", input.mesh.name, o.name));
         if (!is_long_build(o, t))
-          if (Status status = build_own(o, plan, input, t, executors, session); !status) return status.error();
+          if (Status status = build_own(o, &o == &own[0], plan, input, t, executors, session); !status)
+            return status.error();
         progress.update(++done / steps);
       }
       for (Rival& r : rivals) {

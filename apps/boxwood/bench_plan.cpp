@@ -34,6 +34,12 @@ bool has_option(const builders::BuilderInfo& builder, const std::string& key) {
          std::any_of(common.begin(), common.end(), is_key);
 }
 
+/// The builder that a quality level or the id of a builder stands for; null: there is none.
+const builders::BuilderInfo* builder_of(const std::string& id) {
+  const QualityLevel* const level = find_quality_level(id);
+  return builders::find(level ? level->builder : id);
+}
+
 /// With several builders a setting goes to those that have it; one that none has goes to all, so that the library
 /// refuses it in its own words.
 Status add_builders(const BenchOptions& options, BenchPlan& plan) {
@@ -49,15 +55,15 @@ Status add_builders(const BenchOptions& options, BenchPlan& plan) {
   std::set<std::string> known_keys;
   for (const std::string& id : ids)
     for (const auto& [key, value] : *settings)
-      if (const auto* builder = builders::find(id); builder && has_option(*builder, key)) known_keys.insert(key);
+      if (const auto* builder = builder_of(id); builder && has_option(*builder, key)) known_keys.insert(key);
   std::set<std::string> seen;
   for (const std::string& id : ids) {
     if (!seen.insert(id).second) continue;
     builders::BuildOptions build{id, {}};
-    const auto* builder = builders::find(id);
+    const auto* builder = builder_of(id);
     for (const auto& [key, value] : *settings)
       if (!known_keys.contains(key) || (builder && has_option(*builder, key))) build.settings[key] = value;
-    if (const auto resolved = builders::resolve_options(id, build.settings); !resolved) return resolved.error();
+    if (const auto tree = plan_tree(build); !tree) return tree.error();
     plan.builders.push_back(std::move(build));
   }
   return {};
@@ -80,14 +86,22 @@ Status add_layouts_and_modes(const BenchOptions& options, BenchPlan& plan) {
   return {};
 }
 
-Status add_presplits(const BenchOptions& options, BenchPlan& plan) {
-  for (const std::string& text : options.presplits) {
-    const auto presplit = refs::parse_presplit(text);
-    if (!presplit) return presplit.error();
-    plan.presplits.push_back(*presplit);
+/// Each text as it is written out; "the quality level's" (empty) where none is given.
+template <class Parse>
+Status add_methods(const std::vector<std::string>& texts, Parse parse, std::vector<std::string>& list) {
+  for (const std::string& text : texts) {
+    const auto method = parse(text);
+    if (!method) return method.error();
+    list.push_back(method->text());
   }
-  if (plan.presplits.empty()) plan.presplits.emplace_back();
+  if (list.empty()) list.emplace_back();
+  drop_repeats(list, std::equal_to<>());
   return {};
+}
+
+Status add_presplits_and_optimizers(const BenchOptions& options, BenchPlan& plan) {
+  if (Status status = add_methods(options.presplits, &refs::parse_presplit, plan.presplits); !status) return status;
+  return add_methods(options.optimizers, &optimizers::parse_optimizer, plan.optimizers);
 }
 
 /// Single rays, terminating, are what every layout has; each other choice needs a layout in the plan that has it.
@@ -152,9 +166,9 @@ Status add_rivals(const BenchOptions& options, BenchPlan& plan) {
 
 Result<BenchPlan> make_plan(const BenchOptions& options, const Session& session) {
   BenchPlan plan;
-  for (const auto add : {add_builders, add_presplits, add_layouts_and_modes, add_traversals, add_kinds, add_rivals})
+  for (const auto add :
+       {add_builders, add_presplits_and_optimizers, add_layouts_and_modes, add_traversals, add_kinds, add_rivals})
     if (Status status = add(options, plan); !status) return status.error();
-  drop_repeats(plan.presplits, [](const refs::Presplit& a, const refs::Presplit& b) { return a.text() == b.text(); });
   drop_repeats(plan.layouts, std::equal_to<>());
   drop_repeats(plan.modes, std::equal_to<>());
   drop_repeats(plan.kinds, std::equal_to<>());
@@ -180,7 +194,7 @@ Result<BenchPlan> fitted_plan(const BenchPlan& plan, const BenchOptions& options
                               const Session& session) {
   BenchPlan fitted = plan;
   std::erase_if(fitted.builders, [&](const builders::BuildOptions& build) {
-    const auto* builder = builders::find(build.builder);
+    const auto* builder = builder_of(build.builder);
     const bool named =
         std::find(options.builders.begin(), options.builders.end(), build.builder) != options.builders.end();
     if (named || input.mesh.triangles.size() <= builder->largest_sensible) return false;
@@ -218,14 +232,31 @@ Result<BenchResult> run_input(const BenchPlan& plan, const Input& input, const S
   return result;
 }
 
+namespace {
+
+/// What a builder is echoed with: its settings, behind what its quality level stands for.
+Echo settings_of(const TreePlan& tree) {
+  Echo echo = tree.echo();
+  if (!tree.level) echo.erase(echo.begin(), echo.begin() + 3);
+  return echo;
+}
+
+/// Methods that all builders share; "level" where each quality level has its own.
+Json method_list(const std::vector<std::string>& texts) {
+  Json list = Json::array();
+  for (const std::string& text : texts) list.push_back(text.empty() ? "level" : text);
+  return list;
+}
+
+}  // namespace
+
 Json plan_json(const BenchPlan& plan) {
   Json json;
   json["builders"] = Json::object();
   for (const auto& build : plan.builders)
-    if (const auto resolved = builders::resolve_options(build.builder, build.settings))
-      json["builders"][build.builder] = options_json(resolved->echo());
-  json["presplits"] = Json::array();
-  for (const refs::Presplit& presplit : plan.presplits) json["presplits"].push_back(presplit.text());
+    if (const auto tree = plan_tree(build)) json["builders"][build.builder] = options_json(settings_of(*tree));
+  json["presplits"] = method_list(plan.presplits);
+  json["optimizers"] = method_list(plan.optimizers);
   json["layouts"] = plan.layouts;
   json["modes"] = Json::array();
   for (const auto mode : plan.modes) json["modes"].push_back(queries::name(mode));
@@ -258,10 +289,11 @@ void note_plan(const BenchPlan& plan, const std::string& isa, const Session& ses
   session.note("{}, ray seed {}, {} {} after a warm-up\n", session.environment_line(isa), plan.seed, plan.repeat,
                plan.repeat == 1 ? "repeat" : "repeats in turns");
   for (const auto& build : plan.builders)
-    if (const auto resolved = builders::resolve_options(build.builder, build.settings))
-      session.note("  {}: {}\n", build.builder, options_line(resolved->echo()));
-  if (plan.presplits.size() == 1 && !plan.presplits[0].is_none())
-    session.note("  pre-split before each: {}\n", plan.presplits[0].text());
+    if (const auto tree = plan_tree(build)) session.note("  {}: {}\n", build.builder, options_line(settings_of(*tree)));
+  if (plan.presplits.size() == 1 && !plan.presplits[0].empty())
+    session.note("  pre-split before each: {}\n", plan.presplits[0]);
+  if (plan.optimizers.size() == 1 && !plan.optimizers[0].empty())
+    session.note("  optimizer after each: {}\n", plan.optimizers[0]);
   if (!plan.rivals.empty())
     session.note("  rival: {}, rtcIntersect1 and rtcOccluded1 in a loop; fast = default scene flags, robust = ROBUST\n",
                  plan.rival_version);
@@ -284,7 +316,8 @@ void BenchOptions::add_to(CLI::App& command) {
   command.add_option("INPUT", inputs, kInputHelp)->required()->type_name("");
   input_options.add_to(command);
   add_presplit_option(command, presplits);
-  add_list(command, "-b,--builders", builders, "Builder ids, or all (the default)");
+  add_optimizer_option(command, optimizers);
+  add_list(command, "-b,--builders", builders, "Quality levels and builders, or all builders (the default: all)");
   add_settings_option(command, settings);
   add_list(command, "--modes", modes, "robust (the default), fast");
   add_list(command, "--rays", kinds, "primary, random, diffuse, occlusion (these by default), lines");

@@ -12,7 +12,7 @@ namespace boxwood::program {
 struct BenchOptions {
   CommonOptions common;
   InputOptions input_options;
-  std::vector<std::string> inputs, presplits;
+  std::vector<std::string> inputs, presplits, optimizers;
   std::vector<std::string> builders{"all"}, layouts{AccelOptions{}.layout}, modes{"robust"}, rivals, settings;
   std::vector<std::string> kinds{"primary", "random", "diffuse", "occlusion"}, traversals{"single"};
   std::string camera, size = "1024x1024", csv;

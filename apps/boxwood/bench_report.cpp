@@ -34,9 +34,10 @@ std::string traversal_text(const Contestant& c) {
 
 /// The columns that tell contestants apart, leaving out what is the same for all.
 struct Names {
-  bool presplit, layout, mode, traversal, terminating;
+  bool presplit, optimizer, layout, mode, traversal, terminating;
   explicit Names(const BenchPlan& plan)
       : presplit(plan.presplits.size() > 1),
+        optimizer(plan.optimizers.size() > 1),
         layout(plan.layouts.size() > 1),
         mode(plan.modes.size() > 1),
         traversal(plan.traversals.back().traversal != queries::Traversal::single ||
@@ -45,6 +46,7 @@ struct Names {
   void columns(Table& table) const {
     table.column("builder", Align::left);
     if (presplit) table.column("pre-split", Align::left);
+    if (optimizer) table.column("optimizer", Align::left);
     if (layout) table.column("layout", Align::left);
     if (mode) table.column("mode", Align::left);
     if (traversal) table.column("traversal", Align::left);
@@ -53,6 +55,7 @@ struct Names {
   std::vector<std::string> cells(const Contestant& c) const {
     std::vector<std::string> cells{c.builder};
     if (presplit) cells.push_back(c.is_rival() ? "-" : c.presplit);
+    if (optimizer) cells.push_back(c.is_rival() ? "-" : c.optimizer);
     if (layout) cells.push_back(c.is_rival() ? "-" : c.layout);
     if (mode) cells.push_back(queries::name(c.mode));
     if (traversal) cells.push_back(c.is_rival() ? "-" : traversal_text(c));
@@ -63,9 +66,10 @@ struct Names {
 
 std::string build_table(const BenchPlan& plan, const BenchResult& result) {
   Table table;
-  const bool has_presplits = plan.presplits.size() > 1;
+  const bool has_presplits = plan.presplits.size() > 1, has_optimizers = plan.optimizers.size() > 1;
   table.column("builder", Align::left);
   if (has_presplits) table.column("pre-split", Align::left);
+  if (has_optimizers) table.column("optimizer", Align::left);
   table.column("layout", Align::left);
   for (const int threads : plan.thread_counts) {
     table.column("ms", Align::right, "build, " + thread_word(threads));
@@ -78,6 +82,7 @@ std::string build_table(const BenchPlan& plan, const BenchResult& result) {
     // A rival is built anew for each mode.
     std::vector<std::string> cells{c.builder};
     if (has_presplits) cells.push_back(c.is_rival() ? "-" : c.presplit);
+    if (has_optimizers) cells.push_back(c.is_rival() ? "-" : c.optimizer);
     cells.push_back(c.is_rival() ? queries::name(c.mode) : c.layout);
     for (std::size_t t = 0; t < plan.thread_counts.size(); ++t) {
       const double ms = median_build(c, t);
@@ -198,6 +203,7 @@ Json rows_json(const BenchPlan& plan, const BenchResult& result) {
     json["triangles"] = result.input->mesh.triangles.size();
     json["builder"] = c.builder;
     json["presplit"] = c.is_rival() ? Json() : Json(c.presplit);
+    json["optimizer"] = c.is_rival() ? Json() : Json(c.optimizer);
     json["layout"] = c.layout;
     json["mode"] = queries::name(c.mode);
     json["traversal"] = c.is_rival() ? Json() : Json(queries::name(c.traversal.traversal));

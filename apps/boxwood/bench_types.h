@@ -35,8 +35,8 @@ struct RivalChoice {
 
 /// The checked options of one run.
 struct BenchPlan {
-  std::vector<builders::BuildOptions> builders;
-  std::vector<refs::Presplit> presplits;  ///< each before every builder
+  std::vector<builders::BuildOptions> builders;    ///< or quality levels
+  std::vector<std::string> presplits, optimizers;  ///< each with every builder; empty: the quality level's
   std::vector<std::string> layouts;
   std::vector<queries::Mode> modes;
   std::vector<queries::TraversalOptions> traversals;  ///< each for the layouts that have it; terminating ones first
@@ -84,7 +84,7 @@ struct BuildFigures {
 
 /// One thing that traces: ours (accel) or a rival's (embree).
 struct Contestant {
-  std::string builder, presplit, layout;
+  std::string builder, presplit, optimizer, layout;  ///< the builder or level as it was named
   queries::Mode mode = queries::Mode::robust;
   std::shared_ptr<BuildFigures> build;
   std::shared_ptr<const Accel> accel;

@@ -28,7 +28,8 @@ struct Options {
 
 /// All that is reported of one build.
 struct Outcome {
-  BuiltTree built;
+  tree::BinaryTree tree;
+  TreeReport built;
   double encode_seconds = 0, validate_seconds = 0;
   std::size_t bytes = 0, layout_nodes = 0;
   std::string isa;
@@ -54,16 +55,15 @@ Status validate(const Input& input, const tree::BinaryTree& tree, const layouts:
   return layouts::validate(layout, tree.references.span(), tree.splits_references, mesh);
 }
 
-Result<Outcome> build_and_measure(const Options& options, const refs::Presplit& presplit,
-                                  const builders::BuildOptions& build_options, const Input& input,
+Result<Outcome> build_and_measure(const Options& options, const TreePlan& plan, const Input& input,
                                   const Session& session) {
   Outcome outcome;
-  Progress progress("building " + build_options.builder, session.shows_progress());
-  auto built = build_tree(input.mesh, presplit, build_options, *session.executor(),
-                          [&](double share) { progress.update(share); });
+  Progress progress("building " + options.pipeline.builder, session.shows_progress());
+  auto built = build_tree(
+      input.mesh, plan, {*session.executor(), [&](double share) { progress.update(share); }, nullptr}, &outcome.built);
   if (!built) return built.error();
-  outcome.built = std::move(*built);
-  const tree::BinaryTree& tree = outcome.built.tree;
+  outcome.tree = std::move(*built);
+  const tree::BinaryTree& tree = outcome.tree;
   progress.update(-1);
   progress.label("encoding " + options.pipeline.layout);
   const auto encoded = encode_tree(input.mesh, tree, options.pipeline.layout, session.executor());
@@ -73,7 +73,7 @@ Result<Outcome> build_and_measure(const Options& options, const refs::Presplit& 
   outcome.layout_nodes = encoded->accel.layout().node_count;
   outcome.isa = encoded->accel.isa();
   outcome.statistics = tree::statistics(tree);
-  const auto resolved = builders::resolve_options(build_options.builder, build_options.settings);
+  const auto resolved = builders::resolve_options(plan.build.builder, plan.build.settings);
   if (!resolved) return resolved.error();
   outcome.cost = metrics::surface_area_cost(tree, resolved->cost());
   if (options.measures) {
@@ -90,8 +90,6 @@ Result<Outcome> build_and_measure(const Options& options, const refs::Presplit& 
   }
   return outcome;
 }
-
-using Echo = std::vector<std::pair<std::string, std::string>>;
 
 Json presplit_json(const Echo& echo, const refs::PresplitReport& presplit) {
   const auto is_presplit = [](const auto& entry) { return entry.first == "presplit"; };
@@ -122,7 +120,8 @@ Json build_json(const Options& options, const Session& session, const Input& inp
   report["build_ms"] = 1e3 * outcome.build_seconds();
   report["times_ms"] = {{"references", 1e3 * outcome.built.reference_seconds},
                         {"presplit", 1e3 * outcome.built.presplit_seconds},
-                        {"tree", 1e3 * outcome.built.tree_seconds},
+                        {"tree", 1e3 * outcome.built.builder_seconds},
+                        {"optimizer", 1e3 * outcome.built.optimizer_seconds},
                         {"encode", 1e3 * outcome.encode_seconds}};
   report["nodes"] = shape.nodes;
   report["leaves"] = shape.leaves;
@@ -139,10 +138,10 @@ Json build_json(const Options& options, const Session& session, const Input& inp
     report["measure_ms"] = 1e3 * outcome.measure_seconds;
   }
   report["bytes"] = outcome.bytes;
-  report["tree_bytes"] = outcome.built.tree.bytes();
+  report["tree_bytes"] = outcome.tree.bytes();
   report["notes"] = Json::object();
-  for (const auto& [name, value] : outcome.built.tree.notes) report["notes"][name] = value;
-  report["hash"] = hash_text(tree::hash(outcome.built.tree));
+  for (const auto& [name, value] : outcome.tree.notes) report["notes"][name] = value;
+  report["hash"] = hash_text(tree::hash(outcome.tree));
   report["valid"] = options.skip_validation ? Json() : Json(outcome.valid.has_value());
   if (!outcome.valid) report["invalid_because"] = outcome.valid.error().message;
   report["peak_memory_bytes"] = peak_memory_bytes();
@@ -178,14 +177,15 @@ void print_measures(const Session& session, const Outcome& outcome) {
 void print_build(const Options& options, const Session& session, const Outcome& outcome) {
   const auto line = [&](const char* key, const std::string& value) { session.result("  {:<16} {}\n", key, value); };
   const tree::Statistics& shape = outcome.statistics;
-  const double triangles = static_cast<double>(outcome.built.tree.primitive_count);
+  const double triangles = static_cast<double>(outcome.tree.primitive_count);
   session.result("{} -> {}\n", options.pipeline.builder, options.pipeline.layout);
-  line("build", fmt::format("{:.1f} ms: references {:.1f}, presplit {:.1f}, tree {:.1f}, encode {:.1f} "
-                            "({:.2f} Mtriangles/s)",
+  line("build", fmt::format("{:.1f} ms: references {:.1f}, presplit {:.1f}, tree {:.1f}, optimizer {:.1f}, "
+                            "encode {:.1f} ({:.2f} Mtriangles/s)",
                             1e3 * outcome.build_seconds(), 1e3 * outcome.built.reference_seconds,
-                            1e3 * outcome.built.presplit_seconds, 1e3 * outcome.built.tree_seconds,
-                            1e3 * outcome.encode_seconds, 1e-6 * triangles / outcome.build_seconds()));
-  if (options.pipeline.presplit != "none") print_presplit(line, outcome.built.presplit);
+                            1e3 * outcome.built.presplit_seconds, 1e3 * outcome.built.builder_seconds,
+                            1e3 * outcome.built.optimizer_seconds, 1e3 * outcome.encode_seconds,
+                            1e-6 * triangles / outcome.build_seconds()));
+  if (outcome.built.presplit.splits > 0) print_presplit(line, outcome.built.presplit);
   line("Exp(T)", fmt::format("{:.4f}", outcome.cost));
   line("nodes", fmt::format("{}, {} of them leaves", with_thousands(shape.nodes), with_thousands(shape.leaves)));
   line("references", with_thousands(shape.references));
@@ -195,8 +195,8 @@ void print_build(const Options& options, const Session& session, const Outcome& 
   line("memory", fmt::format("{:.1f} MiB in {} {} nodes; peak of the process {:.0f} MiB",
                              static_cast<double>(outcome.bytes) / (1 << 20), with_thousands(outcome.layout_nodes),
                              options.pipeline.layout, static_cast<double>(peak_memory_bytes()) / (1 << 20)));
-  for (const auto& [name, value] : outcome.built.tree.notes) line("note", fmt::format("{}: {}", name, value));
-  line("hash", hash_text(tree::hash(outcome.built.tree)));
+  for (const auto& [name, value] : outcome.tree.notes) line("note", fmt::format("{}: {}", name, value));
+  line("hash", hash_text(tree::hash(outcome.tree)));
   line("valid", options.skip_validation ? "not checked"
                 : outcome.valid ? fmt::format("yes, tree and layout ({:.1f} ms)", 1e3 * outcome.validate_seconds)
                                 : "no");
@@ -205,21 +205,18 @@ void print_build(const Options& options, const Session& session, const Outcome& 
 Status run_build(const Options& options) {
   const Session session("build", options.common);
   if (Status status = check_output_folder(options.common.json); !status) return status;
-  const auto build_options = options.pipeline.build_options();
-  if (!build_options) return build_options.error();
-  const auto presplit = refs::parse_presplit(options.pipeline.presplit);
-  if (!presplit) return presplit.error();
-  const auto echo = echo_options(*build_options, *presplit, options.pipeline.layout);
-  if (!echo) return echo.error();
+  const auto plan = options.pipeline.plan();
+  if (!plan) return plan.error();
+  const Echo echo = echo_options(*plan, options.pipeline.layout);
   if (const auto layout = layouts::find(options.pipeline.layout); !layout) return layout.error();
   const auto input = load_usable_input(options.input, options.input_options, session);
   if (!input) return input.error();
-  const auto outcome = build_and_measure(options, *presplit, *build_options, *input, session);
+  const auto outcome = build_and_measure(options, *plan, *input, session);
   if (!outcome) return outcome.error();
-  session.note("{}\n{}\n{}\n", session.environment_line(outcome->isa), input->line(), options_line(*echo));
+  session.note("{}\n{}\n{}\n", session.environment_line(outcome->isa), input->line(), options_line(echo));
   print_build(options, session, *outcome);
   warn_excluded(*input, outcome->built.excluded, session);
-  if (Status status = session.finish(build_json(options, session, *input, *echo, *outcome)); !status) return status;
+  if (Status status = session.finish(build_json(options, session, *input, echo, *outcome)); !status) return status;
   if (!outcome->valid)
     return Error{outcome->valid.error().code, "the tree is not valid: " + outcome->valid.error().message};
   return {};

@@ -1,4 +1,5 @@
-// boxwood builders: the registry of builders.
+// boxwood builders: what --builder takes, the quality levels and the registry of builders.
+#include "boxwood/accel.h"
 #include "boxwood/builders.h"
 #include "commands.h"
 #include "session.h"
@@ -60,11 +61,20 @@ void print_settings(const Session& session, std::span<const builders::OptionSpec
                    default_text(spec));
 }
 
+std::string stands_for(const QualityLevel& level) {
+  std::string text = level.builder;
+  if (std::string_view(level.presplit) != "none") text = std::string(level.presplit) + " + " + text;
+  if (std::string_view(level.optimizer) != "none") text += std::string(" + ") + level.optimizer;
+  return text;
+}
+
 Status run_builders(const Options& options) {
   const Session session("builders", options.common);
   Json report = Json::array();
   std::size_t width = 0;
   for (const auto& builder : builders::registry()) width = std::max(width, std::string(builder.id).size());
+  for (const QualityLevel& level : quality_levels())
+    session.result("{:<{}}  quality level, {}: {}\n", level.id, width, level.summary, stands_for(level));
   for (const auto& builder : builders::registry()) {
     session.result("{:<{}}  {}\n", builder.id, width, builder.summary);
     if (options.show_settings) print_settings(session, builder.options);
@@ -81,7 +91,7 @@ Status run_builders(const Options& options) {
 
 void add_builders_command(CLI::App& program, Run& run) {
   auto options = std::make_shared<Options>();
-  CLI::App& command = *program.add_subcommand("builders", "List the builders");
+  CLI::App& command = *program.add_subcommand("builders", "List the quality levels and the builders");
   command.add_flag("--settings", options->show_settings, "List each builder's options for --set too");
   options->common.add_to(command);
   command.footer("\nExamples:\n  boxwood builders\n  boxwood builders --settings\n  boxwood builders --json -");

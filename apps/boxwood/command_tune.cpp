@@ -79,10 +79,11 @@ Status make_rays(const Options& options, const Input& input, const Session& sess
 
 std::string table_of(const std::vector<TuneResult>& results, bool front_only) {
   Table table;
-  table.column("builder and options", Table::Align::left);
+  table.column("builder", Table::Align::left);
   table.column("pre-split", Table::Align::left);
+  table.column("optimizer", Table::Align::left);
   table.column("layout", Table::Align::left);
-  table.column("optimized", Table::Align::left);
+  table.column("for the rays", Table::Align::left);
   for (const char* head : {"build ms", "Mrays/s", "ratio", "MiB"}) table.column(head);
   std::vector<const TuneResult*> rows;
   for (const TuneResult& r : results)
@@ -91,9 +92,11 @@ std::string table_of(const std::vector<TuneResult>& results, bool front_only) {
   for (const TuneResult* r : rows) {
     std::string builder = r->choice.build.builder;
     for (const auto& [key, value] : r->choice.build.settings) builder += fmt::format(" {}={}", key, value);
-    table.row({builder, r->choice.presplit, r->choice.layout, r->choice.optimized ? "yes" : "no",
-               fmt::format("{:.1f}", 1e3 * r->build_seconds), fmt::format("{:.2f}", r->mrays),
-               fmt::format("{:.2f}", r->ratio), fmt::format("{:.1f}", double(r->bytes) / (1 << 20))});
+    const auto or_dash = [](const std::string& text) { return text.empty() ? std::string("-") : text; };
+    table.row({builder, or_dash(r->choice.presplit), or_dash(r->choice.optimizer), r->choice.layout,
+               r->choice.optimized ? "optimized" : "-", fmt::format("{:.1f}", 1e3 * r->build_seconds),
+               fmt::format("{:.2f}", r->mrays), fmt::format("{:.2f}", r->ratio),
+               fmt::format("{:.1f}", double(r->bytes) / (1 << 20))});
   }
   return table.text();
 }
@@ -114,6 +117,7 @@ Json json_of(const TuneResult& r) {
   json["settings"] = Json::object();
   for (const auto& [key, value] : r.choice.build.settings) json["settings"][key] = value;
   json["presplit"] = r.choice.presplit;
+  json["optimizer"] = r.choice.optimizer;
   json["layout"] = r.choice.layout;
   json["optimized"] = r.choice.optimized;
   json["build_ms"] = 1e3 * r.build_seconds;
@@ -212,7 +216,8 @@ void add_tune_command(CLI::App& program, Run& run) {
       "\nExamples:\n"
       "  boxwood tune bunny.ply --rays diffuse,occlusion --seconds 120\n"
       "  boxwood tune scene:atrium --rays rays.npy --query any --json tuned.json\n\n"
-      "Every other ray is for optimizing trees, the rest for measuring. What is tried depends on the time there is and\n"
+      "Every other ray is for optimizing trees, the rest for measuring. What is tried depends on the time there is "
+      "and\n"
       "what is found on the machine; every tree and every hit does not.");
   command.callback([options, &run] { run = [options] { return run_tune(*options); }; });
 }

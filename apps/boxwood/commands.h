@@ -12,6 +12,8 @@ using Run = std::function<Status()>;
 
 void add_builders_command(CLI::App& program, Run& run);
 void add_presplits_command(CLI::App& program, Run& run);
+void add_levels_command(CLI::App& program, Run& run);
+void add_optimizers_command(CLI::App& program, Run& run);
 void add_scenes_command(CLI::App& program, Run& run);
 void add_info_command(CLI::App& program, Run& run);
 void add_build_command(CLI::App& program, Run& run);

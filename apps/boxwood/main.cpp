@@ -58,6 +58,8 @@ int run_program(int argc, char** argv) {
   program::Run run;
   program::add_builders_command(app, run);
   program::add_presplits_command(app, run);
+  program::add_optimizers_command(app, run);
+  program::add_levels_command(app, run);
   program::add_scenes_command(app, run);
   program::add_info_command(app, run);
   program::add_build_command(app, run);

@@ -1,4 +1,4 @@
-// From a mesh to something to query, step by step with the time of each: what Accel::build does in one call.
+// From a mesh to something to query, with the time of each step: what Accel::build does in one call.
 #pragma once
 
 #include <map>
@@ -12,15 +12,17 @@
 
 namespace boxwood::program {
 
-/// --presplit, --builder, --set and --layout.
+using Echo = std::vector<std::pair<std::string, std::string>>;
+
+/// --builder, --set, --presplit, --optimizer and --layout.
 struct PipelineOptions {
-  std::string builder = builders::BuildOptions{}.builder;
+  std::string builder = AccelOptions{}.build.builder;
   std::vector<std::string> settings;  ///< key=value
   std::string layout = AccelOptions{}.layout;
-  std::string presplit = AccelOptions{}.presplit;
+  std::string presplit, optimizer;  ///< empty: the quality level's
 
   void add_to(CLI::App& command);
-  Result<builders::BuildOptions> build_options() const;
+  Result<TreePlan> plan() const;
 };
 
 /// --presplit; refuses what can't be read as wrong usage, before anything runs.
@@ -28,24 +30,12 @@ void add_presplit_option(CLI::App& command, std::string& presplit);
 /// The same for several, one each time it is given.
 void add_presplit_option(CLI::App& command, std::vector<std::string>& presplits);
 
+/// The same for --optimizer.
+void add_optimizer_option(CLI::App& command, std::string& optimizer);
+void add_optimizer_option(CLI::App& command, std::vector<std::string>& optimizers);
+
 /// Makes --set take one key=value each time it is given.
 void add_settings_option(CLI::App& command, std::vector<std::string>& settings);
-
-struct BuiltTree {
-  tree::BinaryTree tree;
-  std::size_t excluded = 0;
-  refs::PresplitReport presplit;
-  double reference_seconds = 0, presplit_seconds = 0, tree_seconds = 0;
-
-  double seconds() const { return reference_seconds + presplit_seconds + tree_seconds; }
-};
-
-/// References, their pre-split, then the tree. `split`, if any, gets a 1 for each primitive that now has several
-/// references, by the pre-split or by the builder, and a 0 for the others.
-Result<BuiltTree> build_tree(const MeshView& mesh, const refs::Presplit& presplit,
-                             const builders::BuildOptions& options, Executor& executor,
-                             const std::function<void(double)>& progress = {},
-                             std::vector<std::uint32_t>* split = nullptr);
 
 struct BuiltAccel {
   Accel accel;
@@ -60,16 +50,15 @@ struct Pipeline {
   std::size_t excluded = 0;
   refs::PresplitReport presplit;
   double build_seconds = 0;
-  std::vector<std::pair<std::string, std::string>> echo;  ///< resolved options, builder and layout first
-  tree::BinaryTree tree;                                  ///< what the accel was made of
+  Echo echo;              ///< resolved options, builder and layout first
+  tree::BinaryTree tree;  ///< what the accel was made of
 };
-/// Builds with a progress bar; warns about excluded triangles; notes what it did. `split` as for build_tree.
+/// Builds with a progress bar; warns about excluded triangles; notes what it did. `split` as for
+/// boxwood::build_tree.
 Result<Pipeline> run_pipeline(const Input& input, const PipelineOptions& options, const Session& session,
                               std::vector<std::uint32_t>* split = nullptr);
 
-/// The resolved options with builder, pre-split and layout in front: what reports echo.
-Result<std::vector<std::pair<std::string, std::string>>> echo_options(const builders::BuildOptions& options,
-                                                                      const refs::Presplit& presplit,
-                                                                      const std::string& layout);
+/// The resolved options with level, builder, pre-split, optimizer and layout in front: what reports echo.
+Echo echo_options(const TreePlan& plan, const std::string& layout);
 
 }  // namespace boxwood::program

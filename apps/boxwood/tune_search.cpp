@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cmath>
 
-#include "boxwood/refs.h"
 #include "progress.h"
 #include "text.h"
 
@@ -13,7 +12,6 @@ namespace {
 
 /// What is tried first, as far as the library has it: quick ones that show what there is to win, then slower ones.
 constexpr const char* kBuilders[] = {"sbvh", "hlbvh", "sweep-sah", "ebbvh-gated", "ploc", "lbvh", "aac"};
-constexpr const char* kLevels[] = {"best", "balanced", "fast"};
 constexpr const char* kPresplits[] = {"evh:auto", "evh:clip"};
 
 /// Traces of one candidate in turns with the reference: at least this many, and until so much time has gone.
@@ -59,13 +57,16 @@ class Search {
   bool has_time() const { return now() < end_; }
 
   Status try_all() {
-    for (const auto& list : {std::span<const char* const>(kLevels), std::span<const char* const>(kBuilders)})
-      for (const char* id : list)
-        if (const auto* builder = builders::find(id);
-            builder && input_.mesh.triangles.size() <= builder->largest_sensible)
-          if (Status status = attempt({{id, {}}}); !status) return status;
+    const auto levels = quality_levels();
+    for (std::size_t i = levels.size(); i-- > 0;)
+      if (Status status = attempt({.build = {levels[i].id, {}}}); !status) return status;
+    for (const char* id : kBuilders)
+      if (const auto* builder = builders::find(id);
+          builder && input_.mesh.triangles.size() <= builder->largest_sensible)
+        if (Status status = attempt({.build = {id, {}}}); !status) return status;
     if (Status status = vary_fastest(&Search::with_optimizing); !status) return status;
-    for (const auto vary : {&Search::with_layouts, &Search::with_presplits, &Search::with_settings})
+    for (const auto vary :
+         {&Search::with_layouts, &Search::with_optimizers, &Search::with_presplits, &Search::with_settings})
       if (Status status = vary_fastest(vary); !status) return status;
     // The fastest so far may be another one by now.
     return vary_fastest(&Search::with_optimizing);
@@ -99,15 +100,23 @@ class Search {
         choices.push_back(base), choices.back().presplit = parsed->text();
     return choices;
   }
+  std::vector<TuneChoice> with_optimizers(const TuneChoice& base) const {
+    std::vector<TuneChoice> choices;
+    for (const auto& row : optimizers::optimizer_registry())
+      if (const auto plan = plan_tree(base.build, base.presplit, base.optimizer); plan && plan->optimizer.info != &row)
+        choices.push_back(base), choices.back().optimizer = row.id;
+    return choices;
+  }
   /// Each number of the builder halved and doubled, each of its other choices.
   std::vector<TuneChoice> with_settings(const TuneChoice& base) const {
     std::vector<TuneChoice> choices;
-    const auto* builder = builders::find(base.build.builder);
+    const auto plan = plan_tree(base.build, base.presplit, base.optimizer);
+    const auto* builder = plan ? builders::find(plan->build.builder) : nullptr;
     if (!builder) return choices;
     const auto add = [&](const builders::OptionSpec& spec, const std::string& value) {
       choices.push_back(base);
       choices.back().build.settings[spec.key] = value;
-      if (!builders::resolve_options(base.build.builder, choices.back().build.settings)) choices.pop_back();
+      if (!plan_tree(choices.back().build)) choices.pop_back();
     };
     for (const auto& spec : builder->options) {
       for (std::size_t i = 1; i < spec.choices.size(); ++i) add(spec, spec.choices[i]);
@@ -134,7 +143,7 @@ class Search {
     if (!built) return built.error().code == ErrorCode::cancelled ? Status{} : Status(built.error());
     TuneResult result{choice, built->seconds, 0, 1, built->accel.bytes(), false};
     if (!reference_) reference_.emplace(std::move(built->accel));
-    measure(choice.text() == TuneChoice{}.text() ? *reference_ : built->accel, result);
+    measure(results_.empty() ? *reference_ : built->accel, result);
     results_.push_back(std::move(result));
     return {};
   }
@@ -144,13 +153,9 @@ class Search {
     const double start = now();
     std::atomic<bool> cancel{false};
     const auto watch = [&](double) { cancel = !has_time(); };
-    auto references = refs::make_references(input_.mesh, executor);
-    const auto presplit = refs::parse_presplit(choice.presplit);
-    if (!presplit) return presplit.error();
-    if (references)
-      references = refs::apply_presplit(std::move(*references), input_.mesh, *presplit, executor);
-    if (!references) return references.error();
-    const auto tree = builders::build(std::move(*references), choice.build, {executor, watch, &cancel});
+    const auto plan = plan_tree(choice.build, choice.presplit, choice.optimizer);
+    if (!plan) return plan.error();
+    const auto tree = boxwood::build_tree(input_.mesh, *plan, {executor, watch, &cancel});
     if (!tree) return tree.error();
     AccelOptions options;
     options.layout = choice.layout;
@@ -218,14 +223,16 @@ class Search {
 std::string TuneChoice::text() const {
   std::string text = build.builder;
   for (const auto& [key, value] : build.settings) text += fmt::format(" {}={}", key, value);
-  if (presplit != "none") text += ", " + presplit;
+  if (!presplit.empty()) text += ", " + presplit;
+  if (!optimizer.empty()) text += fmt::format(", {}", optimizer == "none" ? "no optimizer" : optimizer);
   return text + ", " + layout + (optimized ? ", optimized" : "");
 }
 
 std::string TuneChoice::command_line() const {
   std::string text = "--builder " + build.builder;
   for (const auto& [key, value] : build.settings) text += fmt::format(" --set {}={}", key, value);
-  if (presplit != "none") text += " --presplit " + presplit;
+  if (!presplit.empty()) text += " --presplit " + presplit;
+  if (!optimizer.empty()) text += " --optimizer " + optimizer;
   return text + " --layout " + layout;
 }
 
@@ -235,7 +242,8 @@ std::string TuneChoice::code() const {
     settings += fmt::format("{}{{\"{}\", \"{}\"}}", settings.empty() ? "" : ", ", key, value);
   std::string text = fmt::format("auto accel = boxwood::Accel::build(mesh, {{.build = {{.builder = \"{}\"{}}}, ",
                                  build.builder, settings.empty() ? "" : ", .settings = {" + settings + "}");
-  if (presplit != "none") text += fmt::format(".presplit = \"{}\", ", presplit);
+  if (!presplit.empty()) text += fmt::format(".presplit = \"{}\", ", presplit);
+  if (!optimizer.empty()) text += fmt::format(".optimizer = \"{}\", ", optimizer);
   text += fmt::format(".layout = \"{}\"}});", layout);
   if (optimized) text += " auto optimized = accel->optimize({.closest_hit = rays, .any_hit = shadow_rays});";
   return text;

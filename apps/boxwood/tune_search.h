@@ -22,8 +22,9 @@ struct TuneRaySets {
 
 /// What is tried.
 struct TuneChoice {
-  builders::BuildOptions build;
-  std::string presplit = "none", layout = AccelOptions{}.layout;
+  builders::BuildOptions build = AccelOptions{}.build;  ///< a builder or a quality level
+  std::string presplit, optimizer;                      ///< empty: the level's, or none
+  std::string layout = AccelOptions{}.layout;
   bool optimized = false;  ///< Accel::optimize behind it, for the rays to tune for
 
   std::string text() const;          ///< "sbvh, presplit evh:t=14, wide8, optimized"
@@ -46,8 +47,8 @@ struct TuneLimits {
   queries::Mode mode = queries::Mode::robust;
 };
 
-/// Tries what there is time for, the most promising first: at least the library's default, which is the first result. In
-/// the order tried.
+/// Tries what there is time for, the most promising first: at least the library's default, which is the first result.
+/// In the order tried.
 Result<std::vector<TuneResult>> search(const Input& input, const TuneRaySets& rays, const TuneLimits& limits,
                                        const Session& session);
 

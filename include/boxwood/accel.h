@@ -5,19 +5,77 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "boxwood/builders.h"
 #include "boxwood/layouts.h"
 #include "boxwood/mesh.h"
+#include "boxwood/optimizers.h"
 #include "boxwood/queries.h"
 
 namespace boxwood {
 
+/// A name for a whole pipeline, taken wherever a builder is named.
+struct QualityLevel {
+  const char* id;       ///< "fast", "balanced", "best"
+  const char* summary;  ///< one line: what it is for
+  const char* presplit;
+  const char* builder;
+  std::span<const std::pair<const char*, const char*>> settings;  ///< of the builder, key and value
+  const char* optimizer;
+  const char* build_cost;  ///< build time against `balanced`, as measured (docs/best-tree.md)
+  const char* memory;      ///< of the finished Accel, likewise
+};
+
+/// All levels, from the quickest to build to the fastest to trace.
+std::span<const QualityLevel> quality_levels();
+/// The level of an id, or null.
+const QualityLevel* find_quality_level(std::string_view id);
+
+/// What makes a binary tree, with all options checked. Made by plan_tree.
+struct TreePlan {
+  const QualityLevel* level = nullptr;  ///< that was named; null: a builder was
+  builders::BuildOptions build;         ///< the builder itself, with the level's settings
+  refs::Presplit presplit;
+  optimizers::Optimizer optimizer;
+
+  /// Key and value as text of all that was resolved: level (if any), builder, pre-split, optimizer, settings.
+  std::vector<std::pair<std::string, std::string>> echo() const;
+};
+
+/// `build.builder` is a builder or a quality level; its settings are the builder's and go before those of the level. An
+/// empty pre-split or optimizer is the level's, or none. Errors: those of builders::resolve_options,
+/// refs::parse_presplit and optimizers::parse_optimizer.
+Result<TreePlan> plan_tree(const builders::BuildOptions& build, std::string_view presplit = {},
+                           std::string_view optimizer = {});
+
+/// How build_tree fared.
+struct TreeReport {
+  std::size_t excluded = 0;  ///< non-finite triangles left out
+  refs::PresplitReport presplit;
+  double reference_seconds = 0, presplit_seconds = 0, builder_seconds = 0, optimizer_seconds = 0;
+
+  double seconds() const { return reference_seconds + presplit_seconds + builder_seconds + optimizer_seconds; }
+};
+
+/// References of the mesh, their pre-split, the builder, the optimizer: what Accel::build does before it encodes.
+/// `split`, if any, gets a 1 for each primitive that has several references, by the pre-split or by the builder, and a
+/// 0 for the others. The same bits for every executor. Errors: what these steps refuse.
+Result<tree::BinaryTree> build_tree(const MeshView& mesh, const TreePlan& plan, const builders::BuildContext& context,
+                                    TreeReport* report = nullptr, std::vector<std::uint32_t>* split = nullptr);
+
 struct AccelOptions {
-  builders::BuildOptions build = {};  ///< builder id and its settings
-  std::string presplit = "none";      ///< how to split references first: what refs::parse_presplit reads
-  std::string layout = "wide8";       ///< linear, wide4, wide8 or wide8-quads
-  std::string isa = {};               ///< empty = environment variable BOXWOOD_ISA, or the best the processor has
+  builders::BuildOptions build = {.builder = "balanced"};  ///< id of a quality level or a builder, and settings
+  std::string presplit = {};     ///< how to split references first: what refs::parse_presplit reads; empty: the level's
+  std::string optimizer = {};    ///< how to better the tree: what optimizers::parse_optimizer reads; empty: the level's
+  std::string layout = "wide8";  ///< linear, wide4, wide8 or wide8-quads
+  /// Wide layouts: what visiting a node costs against testing one block of triangles, > 0, and the most blocks of a
+  /// leaf, 1 to 8 (docs/collapse.md). `linear` has no use for them.
+  float node_cost = 1.5f;
+  int max_leaf_blocks = 4;
+  std::string isa = {};  ///< empty = environment variable BOXWOOD_ISA, or the best the processor has
   /// Runs the build and later the batch queries. Null = a pool of its own over all processors.
   std::shared_ptr<Executor> executor = {};
 };
@@ -41,6 +99,9 @@ struct OptimizeOptions {
   float prior = 8;
   std::size_t most_rays = std::size_t{1} << 17;  ///< looked at, of each question, evenly spaced; at least 4
   std::string layout = {};                       ///< empty: as it is
+  /// As for AccelOptions; a node visit is dearer here, since measured visits are fewer than areas make them.
+  float node_cost = 2.5f;
+  int max_leaf_blocks = 4;
 };
 
 /// What Accel::optimize did. Work is per held-out ray, in tests of one leaf block (a node visit is 1.5).
@@ -62,14 +123,14 @@ struct OptimizedAccel;
 ///     boxwood::Hit hit = accel->closest_hit({.origin = {0, 0, 5}, .direction = {0, 0, -1}});
 class Accel {
  public:
-  /// Errors: what refs::make_references, refs::parse_presplit, refs::apply_presplit, builders::build and
-  /// layouts::encode refuse; an unknown layout or ISA. An empty mesh gives an Accel that every ray misses.
+  /// Errors: what plan_tree, build_tree and layouts::encode refuse; an unknown layout or ISA. An empty mesh gives an
+  /// Accel that every ray misses.
   static Result<Accel> build(const MeshView& mesh, const AccelOptions& options = {});
-  /// From a tree built before over the same mesh; `options.build` and `presplit` are not looked at.
+  /// From a tree built before over the same mesh; `options.build`, `presplit` and `optimizer` are not looked at.
   static Result<Accel> from_tree(const MeshView& mesh, const tree::BinaryTree& tree, const AccelOptions& options = {});
 
-  /// The same triangles in a tree that is better for rays like the sample: treelets rebuilt and nodes merged by measured
-  /// visits of rays that end at their hits, children in the order that is best for any-hit queries (Ogaki and
+  /// The same triangles in a tree that is better for rays like the sample: treelets rebuilt and nodes merged by
+  /// measured visits of rays that end at their hits, children in the order that is best for any-hit queries (Ogaki and
   /// Derouet-Jourdan 2016), visited nodes side by side. Hits stay the same, bit for bit in robust mode. This object
   /// stays as it is and can go on answering from other threads; needs neither the mesh nor the builder's tree. The same
   /// sample and options give the same bits for every executor and instruction set. Some 10^4 rays are a useful sample;

@@ -137,8 +137,10 @@ Result<Decoded> decode(const Layout& layout);
 
 /// Where nodes and children of a wide layout go.
 struct Arrangement {
-  std::vector<std::uint32_t> nodes;  ///< by new place, the old number; the root stays first, all parents before children
-  std::vector<std::uint8_t> lanes;   ///< width for each node, by old number: the old lanes in their new order, used first
+  std::vector<std::uint32_t>
+      nodes;  ///< by new place, the old number; the root stays first, all parents before children
+  std::vector<std::uint8_t>
+      lanes;  ///< width for each node, by old number: the old lanes in their new order, used first
 };
 
 /// The same tree in another order: any-hit queries take the children of a node as they stand, closest-hit queries by

@@ -1,4 +1,4 @@
-// Accel runs the pipeline: mesh -> references (pre-split) -> builder -> (wide tree) -> layout, and hands rays to its
+// Accel runs the pipeline: mesh -> tree (build_tree.cpp) -> (wide tree) -> layout, and hands rays to its
 // kernels.
 #include "boxwood/accel.h"
 
@@ -25,14 +25,9 @@ Status same_length(std::size_t rays, std::size_t results, const char* what) {
 }  // namespace
 
 Result<layouts::Layout> encode_tree(layouts::LayoutId id, const tree::BinaryTree& tree, const MeshView& mesh,
-                                    std::span<const float> node_weights, Executor& executor) {
+                                    optimizers::CollapseOptions options, Executor& executor) {
   if (id == layouts::LayoutId::linear) return layouts::encode_linear(tree, mesh, executor);
-  optimizers::CollapseOptions options;
   options.width = id == layouts::LayoutId::wide4 ? 4 : 8;
-  // A node visit costs about one and a half block tests in the kernels; the surface area cost decides on leaf sizes.
-  options.node_cost = node_weights.empty() ? 1.5f : 2.5f;
-  options.node_weights = node_weights;
-  options.max_leaf_blocks = 4;
   const bool quads = id == layouts::LayoutId::wide8_quads;
   if (quads) {
     // Pricing looks at the triangles, before the encoder could find one that is not there.
@@ -90,17 +85,13 @@ Result<Accel> Accel::build(const MeshView& mesh, const AccelOptions& options) {
     // Fail on a misspelt option before the work, not after it.
     if (auto layout = layouts::find(options.layout); !layout) return layout.error();
     if (auto isa = queries::choose_isa(options.isa); !isa) return isa.error();
-    const auto presplit = refs::parse_presplit(options.presplit);
-    if (!presplit) return presplit.error();
-    auto references = refs::make_references(mesh, *resolved.executor);
-    if (!references) return references.error();
-    const std::size_t excluded = references->excluded;
-    references = refs::apply_presplit(std::move(*references), mesh, *presplit, *resolved.executor);
-    if (!references) return references.error();
-    auto tree = builders::build(std::move(*references), options.build, {*resolved.executor});
+    const auto plan = plan_tree(options.build, options.presplit, options.optimizer);
+    if (!plan) return plan.error();
+    TreeReport report;
+    auto tree = build_tree(mesh, *plan, {*resolved.executor}, &report);
     if (!tree) return tree.error();
     auto accel = from_tree(mesh, *tree, resolved);
-    if (accel) accel->state_->excluded = excluded;
+    if (accel) accel->state_->excluded = report.excluded;
     return accel;
   } catch (const std::bad_alloc&) {
     return {ErrorCode::out_of_memory,
@@ -120,7 +111,10 @@ Result<Accel> Accel::from_tree(const MeshView& mesh, const tree::BinaryTree& tre
     auto fast = queries::select_kernels(*id, queries::Mode::fast, *isa);
     if (!robust) return robust.error();
     if (!fast) return fast.error();
-    auto layout = encode_tree(*id, tree, mesh, {}, *state->executor);
+    optimizers::CollapseOptions collapse;
+    collapse.node_cost = options.node_cost;
+    collapse.max_leaf_blocks = options.max_leaf_blocks;
+    auto layout = encode_tree(*id, tree, mesh, std::move(collapse), *state->executor);
     if (!layout) return layout.error();
     state->layout = std::move(*layout);
     state->robust = *robust;

@@ -6,9 +6,9 @@
 
 namespace boxwood {
 
-/// Collapses where the layout is a wide one, then encodes. `node_weights`: what CollapseOptions takes; a node visit is
-/// priced dearer with them, since what is measured leaves out visits that the surface area cost counts twice.
+/// Collapses where the layout is a wide one, then encodes. Of the options, node_cost, max_leaf_blocks and node_weights
+/// count; the others follow from the layout.
 Result<layouts::Layout> encode_tree(layouts::LayoutId id, const tree::BinaryTree& tree, const MeshView& mesh,
-                                    std::span<const float> node_weights, Executor& executor);
+                                    optimizers::CollapseOptions options, Executor& executor);
 
 }  // namespace boxwood

@@ -124,8 +124,9 @@ std::vector<std::uint32_t> order_nodes(const layouts::Layout& layout, const quer
       const std::uint32_t met = seen.children[node * std::size_t(seen.width) + i].met;
       if (!(word & layouts::kLeafBit) && met > 0) children.push_back({met, word});
     }
-    std::sort(children.begin(), children.end(),
-              [](const auto& a, const auto& b) { return a.first != b.first ? a.first < b.first : a.second > b.second; });
+    std::sort(children.begin(), children.end(), [](const auto& a, const auto& b) {
+      return a.first != b.first ? a.first < b.first : a.second > b.second;
+    });
     for (const auto& child : children) stack.push_back(child.second);
   }
   for (std::uint32_t n = 0; n < layout.node_count; ++n)
@@ -199,7 +200,11 @@ Result<OptimizedLayout> optimize_layout(const Accel& accel, const RaySample& sam
   if (!tree) return tree.error();
   const auto weights = optimizers::node_visits(*tree, trained.cut, options.prior, executor);
   if (!weights) return weights.error();
-  auto after = encode_tree(id, *tree, decoded->mesh(), *weights, executor);
+  optimizers::CollapseOptions collapse;
+  collapse.node_cost = options.node_cost;
+  collapse.max_leaf_blocks = options.max_leaf_blocks;
+  collapse.node_weights = *weights;
+  auto after = encode_tree(id, *tree, decoded->mesh(), std::move(collapse), executor);
   if (!after) return after.error();
   after = arrange(std::move(*after), trained, executor);
   if (!after) return after.error();

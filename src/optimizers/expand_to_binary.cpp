@@ -161,8 +161,7 @@ class Expander {
 }  // namespace
 
 Result<tree::BinaryTree> expand_to_binary(const tree::WideTree& wide, std::span<const Box> reference_boxes,
-                                          std::size_t primitive_count, bool splits_references,
-                                          Executor& executor) try {
+                                          std::size_t primitive_count, bool splits_references, Executor& executor) try {
   if (reference_boxes.size() != wide.references.size())
     return Error{ErrorCode::invalid_argument, "the wide tree has " + std::to_string(wide.references.size()) +
                                                   " references but there are boxes of " +
@@ -176,8 +175,8 @@ Result<tree::BinaryTree> expand_to_binary(const tree::WideTree& wide, std::span<
   expander.run();
   return tree::canonicalize(expander.nodes(), expander.references(), primitive_count, splits_references, executor);
 } catch (const std::bad_alloc&) {
-  return Error{ErrorCode::out_of_memory, "not enough memory to expand a wide tree of " +
-                                             std::to_string(wide.references.size()) + " references"};
+  return Error{ErrorCode::out_of_memory,
+               "not enough memory to expand a wide tree of " + std::to_string(wide.references.size()) + " references"};
 }
 
 }  // namespace boxwood::optimizers

@@ -100,10 +100,12 @@ class Treelet {
       const float *y0 = plane_[2 + g.entry[1]], *y1 = plane_[3 - g.entry[1]];
       const float *z0 = plane_[4 + g.entry[2]], *z1 = plane_[5 - g.entry[2]];
       for (int s = 0; s < end; ++s) {
-        const float near = maximum(maximum((x0[s] - g.origin[0]) * g.reciprocal[0], (y0[s] - g.origin[1]) * g.reciprocal[1]),
-                                   maximum((z0[s] - g.origin[2]) * g.reciprocal[2], g.tmin));
-        const float far = minimum(minimum((x1[s] - g.origin[0]) * g.reciprocal[0], (y1[s] - g.origin[1]) * g.reciprocal[1]),
-                                  minimum((z1[s] - g.origin[2]) * g.reciprocal[2], g.tmax));
+        const float near =
+            maximum(maximum((x0[s] - g.origin[0]) * g.reciprocal[0], (y0[s] - g.origin[1]) * g.reciprocal[1]),
+                    maximum((z0[s] - g.origin[2]) * g.reciprocal[2], g.tmin));
+        const float far =
+            minimum(minimum((x1[s] - g.origin[0]) * g.reciprocal[0], (y1[s] - g.origin[1]) * g.reciprocal[1]),
+                    minimum((z1[s] - g.origin[2]) * g.reciprocal[2], g.tmax));
         crossings_[s] += near <= far;
       }
     }

@@ -1,8 +1,9 @@
-// What a sample of rays does in an encoded tree, child by child: how many rays meet it, in how many of these cases there
-// is a hit below it, and what an any-hit query pays there before it has found one or gives up. The ground of Ogaki and
-// Derouet-Jourdan's child order (2016, bib key ogaki2016). Ours differs: a ray is followed into every child it meets,
-// also behind a hit, so what is measured of a child does not depend on its place; costs below it do, and are what the
-// present order makes them. Scalar code with the kernels' tests; sums of whole numbers, the same for every executor.
+// What a sample of rays does in an encoded tree, child by child: how many rays meet it, in how many of these cases
+// there is a hit below it, and what an any-hit query pays there before it has found one or gives up. The ground of
+// Ogaki and Derouet-Jourdan's child order (2016, bib key ogaki2016). Ours differs: a ray is followed into every child
+// it meets, also behind a hit, so what is measured of a child does not depend on its place; costs below it do, and are
+// what the present order makes them. Scalar code with the kernels' tests; sums of whole numbers, the same for every
+// executor.
 #include <atomic>
 #include <new>
 #include <vector>
@@ -108,9 +109,8 @@ class Recorder {
 
   void search_leaf(std::uint32_t word, const RaySetup& ray) {
     bool success = false;
-    layouts::for_leaf_triangles<Block>(layout_, word, [&](std::uint32_t, const Triangle& triangle) {
-      success = success || is_hit(triangle, ray);
-    });
+    layouts::for_leaf_triangles<Block>(
+        layout_, word, [&](std::uint32_t, const Triangle& triangle) { success = success || is_hit(triangle, ray); });
     total_cost += kBlockPrice * layouts::leaf_blocks(word);
     finish(success, kBlockPrice * layouts::leaf_blocks(word));
   }

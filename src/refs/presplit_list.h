@@ -6,6 +6,6 @@
 namespace boxwood::refs {
 
 extern const PresplitInfo edge_volume_presplit, automatic_edge_volume_presplit, volume_clipping_presplit,
-    early_split_clipping_presplit;
+    early_split_clipping_presplit, priority_presplit;
 
 }  // namespace boxwood::refs

@@ -7,7 +7,7 @@ import unittest
 
 from support import PROGRAM, CommandLineTest
 
-COMMANDS = ["builders", "presplits", "scenes", "info", "build", "subdivide", "trace", "bench", "render"]
+COMMANDS = ["builders", "presplits", "optimizers", "levels", "scenes", "info", "build", "subdivide", "trace", "bench", "render"]
 
 
 class Basics(CommandLineTest):
@@ -57,7 +57,8 @@ class Basics(CommandLineTest):
             self.assertIn(expected, ids)
         self.assertEqual(len(ids), len(set(ids)))
         lines = self.run_program("builders").stdout.splitlines()
-        self.assertEqual([line.split()[0] for line in lines], ids)
+        levels = [level["id"] for level in self.report("levels")]
+        self.assertEqual([line.split()[0] for line in lines], levels + ids)
         for builder in report:
             keys = [option["key"] for option in builder["options"]]
             self.assertIn("cost.traversal", keys)

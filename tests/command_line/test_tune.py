@@ -25,7 +25,7 @@ class Tune(CommandLineTest):
         self.assertGreater(report["trained_rays"], 100)
         self.assertLessEqual(abs(report["trained_rays"] - report["tested_rays"]), 2)
         candidates = report["candidates"]
-        self.assertEqual((candidates[0]["builder"], candidates[0]["ratio"]), ("binned-sah", 1))
+        self.assertEqual((candidates[0]["builder"], candidates[0]["ratio"]), ("balanced", 1))
         self.assertGreater(len(candidates), 1)
         self.check_front(candidates)
         for candidate in candidates:
@@ -52,8 +52,8 @@ class Tune(CommandLineTest):
 
     def test_text(self):
         text = self.run_program("tune", SCENE, "--size", "16x16", "--rays", "random", "--seconds", "0").stdout
-        self.assertIn("Keep the default, binned-sah, wide8", text)
-        self.assertIn("command line: --builder binned-sah --layout wide8", text)
+        self.assertIn("Keep the default, balanced, wide8", text)
+        self.assertIn("command line: --builder balanced --layout wide8", text)
         self.assertIn("boxwood::Accel::build(mesh", text)
 
     def test_errors(self):
@@ -63,8 +63,8 @@ class Tune(CommandLineTest):
         self.refused("tune", SCENE, "--rays", one, says="has 1 rays")
         bad = write_npy(self.folder / "bad.npy", [(0, 0, 0, 1, 0, 0), (0, 0, 0, 0, 0, math.nan)], 6)
         self.refused("tune", SCENE, "--rays", bad, says="row 1")
-        self.refused("tune", SCENE, "--size", "8x8",
-                          "--camera", "eye=90:90:90,look_at=180:180:180", says="no primary ray meets")
+        self.refused("tune", SCENE, "--size", "8x8", "--camera", "eye=90:90:90,look_at=180:180:180",
+                     says="no primary ray meets")
 
 
 if __name__ == "__main__":

@@ -90,8 +90,8 @@ Result<const Laboratory::Tree*> Laboratory::tree(const Subject& subject, const M
   for (const auto& tree : trees_)
     if (tree->key == key) return tree.get();
   const MeshView mesh = subject.input->mesh;
-  const auto presplit = refs::parse_presplit(method.presplit);
-  if (!presplit) return presplit.error();
+  const auto plan = plan_tree({method.builder, method.settings}, method.presplit);
+  if (!plan) return plan.error();
   auto made = std::make_unique<Tree>();
   made->key = key;
   std::vector<double> milliseconds;
@@ -100,16 +100,12 @@ Result<const Laboratory::Tree*> Laboratory::tree(const Subject& subject, const M
   while (milliseconds.empty() ||
          (milliseconds.size() < static_cast<std::size_t>(effort_.repeat) && now() - begin < 2)) {
     const double start = now();
-    auto references = refs::make_references(mesh, *session_.executor());
-    if (!references) return references.error();
-    auto split = refs::apply_presplit(std::move(*references), mesh, *presplit, *session_.executor());
-    if (!split) return split.error();
-    auto tree = builders::build(std::move(*split), {method.builder, method.settings}, {*session_.executor()});
+    auto tree = build_tree(mesh, *plan, {*session_.executor()});
     if (!tree) return tree.error();
     milliseconds.push_back(1e3 * (now() - start));
     made->tree = std::move(*tree);
   }
-  const auto resolved = builders::resolve_options(method.builder, method.settings);
+  const auto resolved = builders::resolve_options(plan->build.builder, plan->build.settings);
   if (!resolved) return resolved.error();
   AccelOptions options;
   options.layout = method.layout;

@@ -56,9 +56,9 @@ TEST(Decode, TrianglesAndReferencesComeBack) {
           const Triangle expected = mesh.view().triangle(i), found = decoded->mesh().triangle(i);
           ASSERT_EQ(std::memcmp(&expected, &found, sizeof expected), 0) << label << " triangle " << i;
         }
-        EXPECT_EQ(decoded->tree.first_child.size(),
-                  row.id == LayoutId::linear ? std::max<std::size_t>(encoded.layout.node_count / 2, 1) + 1
-                                             : encoded.layout.node_count + 1)
+        EXPECT_EQ(decoded->tree.first_child.size(), row.id == LayoutId::linear
+                                                        ? std::max<std::size_t>(encoded.layout.node_count / 2, 1) + 1
+                                                        : encoded.layout.node_count + 1)
             << label;
         EXPECT_TRUE(decoded->tree.bounds == encoded.layout.bounds);
       }
@@ -103,8 +103,7 @@ Arrangement backwards(const Layout& layout, std::size_t width) {
     stack.pop_back();
     how.nodes.push_back(node);
     const std::size_t used = first[node + 1] - first[node];
-    for (std::size_t i = 0; i < width; ++i)
-      how.lanes[node * width + i] = std::uint8_t(i < used ? used - 1 - i : i);
+    for (std::size_t i = 0; i < width; ++i) how.lanes[node * width + i] = std::uint8_t(i < used ? used - 1 - i : i);
     for (std::uint32_t c = first[node]; c < first[node + 1]; ++c)
       if (decoded->tree.children[c].count == 0) stack.push_back(decoded->tree.children[c].first);
   }

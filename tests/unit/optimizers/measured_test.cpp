@@ -34,8 +34,8 @@ std::vector<Case> cases() {
   TriangleMesh equal = test::soup(1, 4);
   for (int i = 0; i < 500; ++i) equal.triangles.push_back(equal.triangles[0]);
   std::vector<Case> made;
-  for (const TriangleMesh& mesh : {test::icosphere(3), test::soup(900, 21), test::grid(20), test::soup(1, 2),
-                                   test::soup(2, 3), equal})
+  for (const TriangleMesh& mesh :
+       {test::icosphere(3), test::soup(900, 21), test::grid(20), test::soup(1, 2), test::soup(2, 3), equal})
     made.push_back(make_case(mesh));
   return made;
 }

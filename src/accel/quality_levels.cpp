@@ -1,0 +1,93 @@
+// The quality levels, and the one function that turns names into what runs.
+#include <algorithm>
+
+#include "boxwood/accel.h"
+
+namespace boxwood {
+namespace {
+
+constexpr QualityLevel kLevels[] = {
+    {.id = "fast",
+     .summary = "for trees that are rebuilt often",
+     .presplit = "none",
+     .builder = "hlbvh",
+     .settings = {},
+     .optimizer = "none",
+     .build_cost = "0.6 of balanced",
+     .memory = "as balanced"},
+    {.id = "balanced",
+     .summary = "the default: quick to build, good to trace",
+     .presplit = "none",
+     .builder = "binned-sah",
+     .settings = {},
+     .optimizer = "none",
+     .build_cost = "1",
+     .memory = "62 to 67 bytes per triangle"},
+    {.id = "best",
+     .summary = "for trees that are traced for long",
+     .presplit = "none",
+     .builder = "sbvh",
+     .settings = {},
+     .optimizer = "reinsertion",
+     .build_cost = "10 to 20 of balanced",
+     .memory = "up to 1.5 of balanced"},
+};
+
+std::string known_levels() {
+  std::string list;
+  for (const QualityLevel& level : kLevels) list += std::string(list.empty() ? "" : ", ") + level.id;
+  return list;
+}
+
+}  // namespace
+
+std::span<const QualityLevel> quality_levels() {
+  return kLevels;
+}
+
+const QualityLevel* find_quality_level(std::string_view id) {
+  const auto* const level =
+      std::find_if(std::begin(kLevels), std::end(kLevels), [&](const auto& l) { return id == l.id; });
+  return level == std::end(kLevels) ? nullptr : level;
+}
+
+Result<TreePlan> plan_tree(const builders::BuildOptions& build, std::string_view presplit, std::string_view optimizer) {
+  try {
+    TreePlan plan;
+    plan.build = build;
+    plan.level = find_quality_level(build.builder);
+    if (plan.level) {
+      plan.build.builder = plan.level->builder;
+      for (const auto& [key, value] : plan.level->settings) plan.build.settings.emplace(key, value);
+      if (presplit.empty()) presplit = plan.level->presplit;
+      if (optimizer.empty()) optimizer = plan.level->optimizer;
+    } else if (!builders::find(build.builder)) {
+      const auto unknown = builders::resolve_options(build.builder, build.settings);
+      return {ErrorCode::unknown_name, unknown.error().message + "; quality levels are: " + known_levels()};
+    }
+    if (auto resolved = builders::resolve_options(plan.build.builder, plan.build.settings); !resolved)
+      return resolved.error();
+    auto parsed_presplit = refs::parse_presplit(presplit.empty() ? "none" : presplit);
+    if (!parsed_presplit) return parsed_presplit.error();
+    plan.presplit = std::move(*parsed_presplit);
+    auto parsed_optimizer = optimizers::parse_optimizer(optimizer.empty() ? "none" : optimizer);
+    if (!parsed_optimizer) return parsed_optimizer.error();
+    plan.optimizer = std::move(*parsed_optimizer);
+    return plan;
+  } catch (const std::bad_alloc&) {
+    return {ErrorCode::out_of_memory, "out of memory while reading the options of a build"};
+  }
+}
+
+std::vector<std::pair<std::string, std::string>> TreePlan::echo() const {
+  std::vector<std::pair<std::string, std::string>> echo;
+  if (level) echo.emplace_back("level", level->id);
+  echo.emplace_back("builder", build.builder);
+  echo.emplace_back("presplit", presplit.text());
+  echo.emplace_back("optimizer", optimizer.text());
+  if (const auto resolved = builders::resolve_options(build.builder, build.settings))
+    for (auto& entry : resolved->echo()) echo.push_back(std::move(entry));
+  return echo;
+}
+
+}  // namespace boxwood
