@@ -107,7 +107,7 @@ TEST(NodeVisits, AreTheSharesOfTheSegments) {
   for (std::size_t n = 0; n < counts.size(); ++n) {
     if (counts[n] < 20) continue;
     EXPECT_NEAR((*weights)[n] / (*weights)[0], double(counts[n]) / double(counts[0]), 0.02) << n;
-    if (!c.tree.nodes[n].is_leaf())
+    if (!c.tree.nodes[n].is_leaf()) {
       for (const std::uint32_t child : {c.tree.nodes[n].first, c.tree.nodes[n].first + 1})
         EXPECT_LE((*weights)[child], (*weights)[n]);
   }
