@@ -96,7 +96,7 @@ struct OptimizeOptions {
   int passes = 3;  ///< over all treelets, 0 to 100 (0: only collapse and order); ends early when nothing changes
   /// Rays, at each node, that go as the surface area says: above 0, to 1e6. Many keep the tree closer to one for all
   /// kinds of rays, few trust the sample.
-  float prior = 8;
+  float prior = 32;
   std::size_t most_rays = std::size_t{1} << 17;  ///< looked at, of each question, evenly spaced; at least 4
   std::string layout = {};                       ///< empty: as it is
   /// As for AccelOptions; a node visit is dearer here, since measured visits are fewer than areas make them.

@@ -108,12 +108,13 @@ Result<tree::BinaryTree> apply_optimizer(tree::BinaryTree&& tree, const Optimize
 
 // ---- Measured rays ------------------------------------------------------------------------------------------------
 
-/// A binary tree with the wide tree's leaves split down to single references: children are merged pair by pair, the
-/// smallest common box first, leaves are cut where the surface area cost is least. `reference_boxes` are those of
-/// `wide.references`, inside their leaves. Any width and leaf size. Errors: a number of boxes that does not fit, out of
-/// memory. Deterministic, any depth.
+/// A binary tree with the wide tree's leaves, or these split down to single references (`splits_leaves`): children are
+/// merged pair by pair, the smallest common box first, leaves are cut where the surface area cost is least.
+/// `reference_boxes` are those of `wide.references`, inside their leaves. Any width and leaf size. Errors: a number of
+/// boxes that does not fit, out of memory. Deterministic, any depth.
 Result<tree::BinaryTree> expand_to_binary(const tree::WideTree& wide, std::span<const Box> reference_boxes,
-                                          std::size_t primitive_count, bool splits_references, Executor& executor);
+                                          std::size_t primitive_count, bool splits_references, Executor& executor,
+                                          bool splits_leaves = true);
 
 /// How often rays visit each node, as shares of the rays that visit the root: measured with segments, which are rays
 /// whose tmax is where they ended, and `prior` rays more at each node that go as the surface area says. What

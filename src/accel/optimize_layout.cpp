@@ -194,7 +194,9 @@ Result<OptimizedLayout> optimize_layout(const Accel& accel, const RaySample& sam
   const auto decoded = layouts::decode(before);
   if (!decoded) return decoded.error();
   const auto boxes = reference_boxes(*decoded, executor);
-  auto tree = optimizers::expand_to_binary(decoded->tree, boxes, decoded->triangles.size(), true, executor);
+  // The layout linear has no collapse that would decide on leaves, so there they stay.
+  auto tree = optimizers::expand_to_binary(decoded->tree, boxes, decoded->triangles.size(), true, executor,
+                                           id != layouts::LayoutId::linear);
   if (!tree) return tree.error();
   tree = optimizers::restructure(*tree, trained.cut, {options.passes, options.prior}, executor);
   if (!tree) return tree.error();

@@ -22,7 +22,8 @@ struct Item {
 
 class Expander {
  public:
-  Expander(const tree::WideTree& wide, std::span<const Box> boxes) : wide_(wide), boxes_(boxes) {}
+  Expander(const tree::WideTree& wide, std::span<const Box> boxes, bool splits_leaves)
+      : wide_(wide), boxes_(boxes), splits_leaves_(splits_leaves) {}
 
   void run() {
     nodes_.reserve(2 * wide_.references.size());
@@ -83,10 +84,15 @@ class Expander {
   }
 
   void place_child(const tree::WideTree::Child& child, std::uint32_t node) {
-    if (child.count == 0)
+    if (child.count == 0) {
       slot_[child.first] = node;
-    else
+    } else if (splits_leaves_) {
       split_leaf(child, node);
+    } else {
+      nodes_[node] = {child.bounds, std::uint32_t(references_.size()), child.count};
+      const auto first = wide_.references.begin() + std::ptrdiff_t(child.first);
+      references_.insert(references_.end(), first, first + std::ptrdiff_t(child.count));
+    }
   }
 
   void split_leaf(const tree::WideTree::Child& child, std::uint32_t root) {
@@ -152,6 +158,7 @@ class Expander {
 
   const tree::WideTree& wide_;
   std::span<const Box> boxes_;
+  bool splits_leaves_;
   std::vector<tree::Node> nodes_;
   std::vector<std::uint32_t> references_, slot_;  // slot: binary node of each wide one
   std::vector<Item> items_;
@@ -161,7 +168,8 @@ class Expander {
 }  // namespace
 
 Result<tree::BinaryTree> expand_to_binary(const tree::WideTree& wide, std::span<const Box> reference_boxes,
-                                          std::size_t primitive_count, bool splits_references, Executor& executor) try {
+                                          std::size_t primitive_count, bool splits_references, Executor& executor,
+                                          bool splits_leaves) try {
   if (reference_boxes.size() != wide.references.size())
     return Error{ErrorCode::invalid_argument, "the wide tree has " + std::to_string(wide.references.size()) +
                                                   " references but there are boxes of " +
@@ -171,7 +179,7 @@ Result<tree::BinaryTree> expand_to_binary(const tree::WideTree& wide, std::span<
     empty.primitive_count = primitive_count;
     return empty;
   }
-  Expander expander(wide, reference_boxes);
+  Expander expander(wide, reference_boxes, splits_leaves);
   expander.run();
   return tree::canonicalize(expander.nodes(), expander.references(), primitive_count, splits_references, executor);
 } catch (const std::bad_alloc&) {

@@ -51,7 +51,7 @@ class Treelet {
     const Box box = nodes_[root_].bounds;
     const VisitShare share(std::uint32_t(ids.size()), box.half_area(), prior);
     for (int s = 1; s <= all; ++s) weight_[s] = share(crossings_[s], area_[s]);
-    const float before = current_cost(root_);
+    const float before = current_cost();
     find_best(all);
     if (!(cost_[all] < before * (1 - 1e-5f))) return false;
     write(all);
@@ -111,8 +111,8 @@ class Treelet {
     }
   }
 
-  /// Of the inner nodes below `node` that belong to the treelet, and of itself, in the order of the subsets' sums.
-  float current_cost(std::uint32_t) {
+  /// Of the tree that is there now, in weights.
+  float current_cost() const {
     // opened_[i] is the node whose pair is pairs_[i + 1]; a node's subset is what of the leaves stands below it.
     std::array<int, kLeaves> below{};  // by inner node
     const auto subset_of = [&](std::uint32_t n) {
@@ -202,6 +202,7 @@ class Pass {
     for (std::uint32_t s = 0; s < segments_.size(); ++s)
       if (segments_[s].meets(nodes_[0].bounds)) level[0].segments.push_back(s);
     std::size_t changed = 0;
+    if (level[0].segments.size() < kFewest) level.clear();
     while (!level.empty()) {
       std::vector<std::array<Task, 2>> children(level.size());
       std::vector<std::uint8_t> changes(level.size());
