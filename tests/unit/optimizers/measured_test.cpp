@@ -127,73 +127,74 @@ TEST(NodeVisits, AreTheSharesOfTheSegments) {
         EXPECT_LE((*weights)[child], (*weights)[n]);
     }
   }
+}
 
-  TEST(NodeVisits, WithoutSegmentsAreTheAreas) {
-    const Case c = make_case(test::soup(300, 24));
-    const auto weights = node_visits(c.tree, {}, 8, executor);
-    ASSERT_TRUE(weights);
-    for (std::size_t n = 0; n < weights->size(); ++n)
-      EXPECT_NEAR((*weights)[n], c.tree.nodes[n].bounds.half_area() / c.tree.bounds().half_area(), 1e-4) << n;
-  }
+TEST(NodeVisits, WithoutSegmentsAreTheAreas) {
+  const Case c = make_case(test::soup(300, 24));
+  const auto weights = node_visits(c.tree, {}, 8, executor);
+  ASSERT_TRUE(weights);
+  for (std::size_t n = 0; n < weights->size(); ++n)
+    EXPECT_NEAR((*weights)[n], c.tree.nodes[n].bounds.half_area() / c.tree.bounds().half_area(), 1e-4) << n;
+}
 
-  TEST(Restructure, SameReferencesFewerVisitsSameBits) {
-    ThreadExecutor threads(3);
-    for (const Case& c : cases()) {
-      const auto rays = segments(400, 25);
-      const RestructureOptions options{.prior = 1e-3f};
-      const auto tree = restructure(c.tree, rays, options, executor);
-      ASSERT_TRUE(tree) << c.mesh.name;
-      const Status valid = tree::validate(*tree, {.primitive_boxes = c.boxes});
-      EXPECT_TRUE(valid) << c.mesh.name << ": " << valid.error().message;
-      // Those at a box's very edge are in double precision here.
-      EXPECT_LE(double(crossings(*tree, rays)), 1.001 * double(crossings(c.tree, rays)) + 1) << c.mesh.name;
-      const auto parallel = restructure(c.tree, rays, options, threads);
-      ASSERT_TRUE(parallel);
-      EXPECT_EQ(tree::hash(*tree), tree::hash(*parallel)) << c.mesh.name;
-    }
+TEST(Restructure, SameReferencesFewerVisitsSameBits) {
+  ThreadExecutor threads(3);
+  for (const Case& c : cases()) {
+    const auto rays = segments(400, 25);
+    const RestructureOptions options{.prior = 1e-3f};
+    const auto tree = restructure(c.tree, rays, options, executor);
+    ASSERT_TRUE(tree) << c.mesh.name;
+    const Status valid = tree::validate(*tree, {.primitive_boxes = c.boxes});
+    EXPECT_TRUE(valid) << c.mesh.name << ": " << valid.error().message;
+    // Those at a box's very edge are in double precision here.
+    EXPECT_LE(double(crossings(*tree, rays)), 1.001 * double(crossings(c.tree, rays)) + 1) << c.mesh.name;
+    const auto parallel = restructure(c.tree, rays, options, threads);
+    ASSERT_TRUE(parallel);
+    EXPECT_EQ(tree::hash(*tree), tree::hash(*parallel)) << c.mesh.name;
   }
+}
 
-  TEST(Restructure, FindsABetterTree) {
-    const Case c = make_case(test::soup(900, 26));
-    const auto rays = segments(400, 27);
-    const auto once = restructure(c.tree, rays, {.passes = 1, .prior = 1}, executor);
-    const auto often = restructure(c.tree, rays, {.passes = 5, .prior = 1}, executor);
-    ASSERT_TRUE(once);
-    ASSERT_TRUE(often);
-    EXPECT_LT(double(crossings(*once, rays)), 0.97 * double(crossings(c.tree, rays)));
-    EXPECT_LE(crossings(*often, rays), crossings(*once, rays));
-    const auto none = restructure(c.tree, rays, {.passes = 0}, executor);
-    ASSERT_TRUE(none);
-    EXPECT_EQ(tree::hash(*none), tree::hash(c.tree));
-  }
+TEST(Restructure, FindsABetterTree) {
+  const Case c = make_case(test::soup(900, 26));
+  const auto rays = segments(400, 27);
+  const auto once = restructure(c.tree, rays, {.passes = 1, .prior = 1}, executor);
+  const auto often = restructure(c.tree, rays, {.passes = 5, .prior = 1}, executor);
+  ASSERT_TRUE(once);
+  ASSERT_TRUE(often);
+  EXPECT_LT(double(crossings(*once, rays)), 0.97 * double(crossings(c.tree, rays)));
+  EXPECT_LE(crossings(*often, rays), crossings(*once, rays));
+  const auto none = restructure(c.tree, rays, {.passes = 0}, executor);
+  ASSERT_TRUE(none);
+  EXPECT_EQ(tree::hash(*none), tree::hash(c.tree));
+}
 
-  TEST(Restructure, RaysThatCanHitNothingCountForNothing) {
-    const Case c = make_case(test::soup(200, 28));
-    const float nan = std::nanf("");
-    const std::vector<Ray> rays{{.origin = {nan, 0, 0}, .direction = {1, 0, 0}},
-                                {.origin = {}, .direction = {}},
-                                {.origin = {}, .tmin = 2, .direction = {1, 0, 0}, .tmax = 1}};
-    const auto tree = restructure(c.tree, rays, {}, executor);
-    ASSERT_TRUE(tree);
-    EXPECT_EQ(tree::hash(*tree), tree::hash(c.tree));
-  }
+TEST(Restructure, RaysThatCanHitNothingCountForNothing) {
+  const Case c = make_case(test::soup(200, 28));
+  const float nan = std::nanf("");
+  const std::vector<Ray> rays{{.origin = {nan, 0, 0}, .direction = {1, 0, 0}},
+                              {.origin = {}, .direction = {}},
+                              {.origin = {}, .tmin = 2, .direction = {1, 0, 0}, .tmax = 1}};
+  const auto tree = restructure(c.tree, rays, {}, executor);
+  ASSERT_TRUE(tree);
+  EXPECT_EQ(tree::hash(*tree), tree::hash(c.tree));
+}
 
-  TEST(NodeWeights, TakeTheAreasPlaceInTheCollapse) {
-    const Case c = make_case(test::soup(900, 29));
-    std::vector<float> areas, few(3);
-    for (const tree::Node& node : c.tree.nodes) areas.push_back(node.bounds.half_area());
-    const auto by_area = collapse_to_wide(c.tree, {}, executor);
-    const auto by_weight = collapse_to_wide(c.tree, {.node_weights = areas}, executor);
-    const auto rays = segments(400, 30);
-    const auto visits = node_visits(c.tree, rays, 1, executor);
-    const auto by_visits = collapse_to_wide(c.tree, {.node_weights = *visits}, executor);
-    ASSERT_TRUE(by_area && by_weight && by_visits);
-    EXPECT_EQ(by_area->children.size(), by_weight->children.size());
-    EXPECT_NE(by_area->first_child, by_visits->first_child);
-    const auto refused = collapse_to_wide(c.tree, {.node_weights = few}, executor);
-    ASSERT_FALSE(refused);
-    EXPECT_NE(refused.error().message.find("weights of 3"), std::string::npos);
-  }
+TEST(NodeWeights, TakeTheAreasPlaceInTheCollapse) {
+  const Case c = make_case(test::soup(900, 29));
+  std::vector<float> areas, few(3);
+  for (const tree::Node& node : c.tree.nodes) areas.push_back(node.bounds.half_area());
+  const auto by_area = collapse_to_wide(c.tree, {}, executor);
+  const auto by_weight = collapse_to_wide(c.tree, {.node_weights = areas}, executor);
+  const auto rays = segments(400, 30);
+  const auto visits = node_visits(c.tree, rays, 1, executor);
+  const auto by_visits = collapse_to_wide(c.tree, {.node_weights = *visits}, executor);
+  ASSERT_TRUE(by_area && by_weight && by_visits);
+  EXPECT_EQ(by_area->children.size(), by_weight->children.size());
+  EXPECT_NE(by_area->first_child, by_visits->first_child);
+  const auto refused = collapse_to_wide(c.tree, {.node_weights = few}, executor);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("weights of 3"), std::string::npos);
+}
 
 }  // namespace
 }  // namespace boxwood::optimizers
