@@ -8,6 +8,7 @@
 #include "input.h"
 #include "pipeline.h"
 #include "progress.h"
+#include "ray_file.h"
 #include "session.h"
 #include "text.h"
 
@@ -24,22 +25,6 @@ struct Options {
 };
 
 constexpr std::size_t kBlock = std::size_t{1} << 20;  // rays between two looks at the progress bar
-
-std::string fault_of(const Ray& ray) {
-  if (!is_finite(ray.origin)) return fmt::format("the origin {} is not finite", vector_text(ray.origin));
-  if (!is_finite(ray.direction)) return fmt::format("the direction {} is not finite", vector_text(ray.direction));
-  if (ray.direction == Vec3{}) return "the direction is zero";
-  if (!(ray.tmin >= 0)) return fmt::format("tmin is {}, which is not 0 or more", ray.tmin);
-  if (!(ray.tmax >= ray.tmin)) return fmt::format("tmax {} is below tmin {}", ray.tmax, ray.tmin);
-  return {};
-}
-
-Status check_rays(const std::string& path, std::span<const Ray> rays) {
-  for (std::size_t row = 0; row < rays.size(); ++row)
-    if (const std::string fault = fault_of(rays[row]); !fault.empty())
-      return {ErrorCode::malformed, fmt::format("{}, row {} (counting from 0): {}", path, row, fault)};
-  return {};
-}
 
 struct Answers {
   std::vector<Hit> hits;
@@ -89,9 +74,8 @@ Status run_trace(const Options& options) {
   if (!mode) return mode.error();
   for (const std::string& path : {options.output, options.common.json})
     if (Status status = check_output_folder(path); !status) return status;
-  const auto rays = io::read_rays(options.rays);
+  const auto rays = read_ray_file(options.rays);
   if (!rays) return rays.error();
-  if (Status status = check_rays(options.rays, *rays); !status) return status;
   const auto input = load_usable_input(options.input, options.input_options, session);
   if (!input) return input.error();
   const auto pipeline = run_pipeline(*input, options.pipeline, session);

@@ -22,6 +22,7 @@ void add_trace_command(CLI::App& program, Run& run);
 void add_bench_command(CLI::App& program, Run& run);
 void add_duel_command(CLI::App& program, Run& run);
 void add_ablate_command(CLI::App& program, Run& run);
+void add_tune_command(CLI::App& program, Run& run);
 void add_correlate_command(CLI::App& program, Run& run);
 void add_render_command(CLI::App& program, Run& run);
 void add_reproduce_command(CLI::App& program, Run& run);

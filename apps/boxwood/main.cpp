@@ -68,6 +68,7 @@ int run_program(int argc, char** argv) {
   program::add_bench_command(app, run);
   program::add_duel_command(app, run);
   program::add_ablate_command(app, run);
+  program::add_tune_command(app, run);
   program::add_correlate_command(app, run);
   program::add_render_command(app, run);
   program::add_reproduce_command(app, run);

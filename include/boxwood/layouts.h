@@ -126,6 +126,34 @@ Result<Layout> encode_wide_quads(const tree::WideTree& tree, const MeshView& mes
 /// Blocks that a leaf over these references takes in layouts with quads; above 32 references, leaves of 32 each.
 std::uint32_t quad_blocks(std::span<const std::uint32_t> references, const MeshView& mesh);
 
+/// What a layout was made of, as far as it still holds it. A reference's box is not kept: where the tree splits
+/// references it is the part of the triangle inside the leaf's box.
+struct Decoded {
+  tree::WideTree tree;              ///< of width 2 (`linear`), 4 or 8; nodes and children as they stand in the layout
+  std::vector<Triangle> triangles;  ///< by primitive id up to the largest one; zeros where the tree has none
+
+  /// The triangles as a mesh without shared vertices, to encode from. It looks into this object.
+  MeshView mesh() const { return {triangles.data(), 3 * triangles.size(), nullptr, triangles.size()}; }
+};
+
+/// Turns any layout back into a tree and triangles, with the mesh's exact corners; encoding these gives the same layout
+/// again, up to the order of children. Error: out of memory. O(nodes + triangles).
+Result<Decoded> decode(const Layout& layout);
+
+/// Where nodes and children of a wide layout go.
+struct Arrangement {
+  std::vector<std::uint32_t>
+      nodes;  ///< by new place, the old number; the root stays first, all parents before children
+  std::vector<std::uint8_t>
+      lanes;  ///< width for each node, by old number: the old lanes in their new order, used first
+};
+
+/// The same tree in another order: any-hit queries take the children of a node as they stand, closest-hit queries by
+/// distance, and nodes that are visited one after the other are best side by side. Hits stay the same. Leaves follow
+/// their nodes. Errors: the layout `linear`, an arrangement of another size, out of memory; that it is a permutation is
+/// the caller's part.
+Result<Layout> arrange(const Layout& layout, const Arrangement& arrangement);
+
 /// Walks the encoded tree and gives the first contradiction as an error: every child box holds all triangles below it
 /// (meets them, when references are split), every word points inside the arrays, every reference is found exactly as
 /// often as in `references`, those of the binary tree (when references are split: at least once and at most as often),

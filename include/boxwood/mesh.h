@@ -113,8 +113,8 @@ AlignedBuffer<EdgeLink> edge_links(const MeshView& mesh, Weld weld, Executor& ex
 using EdgeNeighbours = std::array<std::uint32_t, 3>;
 inline constexpr std::uint32_t kNoNeighbour = 0xffffffffu;
 /// The neighbours of all triangles, unusable ones without any. Of three or more triangles on an edge the first is the
-/// neighbour of the second, the third that of the fourth, and so on by their ids. Requires check_indices to have passed.
-/// Expected O(n), parallel, deterministic.
+/// neighbour of the second, the third that of the fourth, and so on by their ids. Requires check_indices to have
+/// passed. Expected O(n), parallel, deterministic.
 AlignedBuffer<EdgeNeighbours> edge_neighbours(const MeshView& mesh, Weld weld, Executor& executor);
 
 // ---- Procedural scenes -------------------------------------------------------------------------------------------

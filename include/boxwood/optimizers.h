@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "boxwood/base.h"
+#include "boxwood/math.h"
 #include "boxwood/parallel.h"
 #include "boxwood/tree.h"
 
@@ -23,6 +24,9 @@ struct CollapseOptions {
   /// Blocks that a leaf over these references takes, where their number alone does not say it; empty: their number over
   /// `block`, rounded up, which is also the least it may say. Called from several threads at once.
   std::function<std::uint32_t(std::span<const std::uint32_t> references)> leaf_blocks = {};
+  /// What takes the place of each node's area, one for each node of the binary tree: how often rays visit it, in any
+  /// unit. Finite, not negative, no larger than the parent's. Empty: the areas. Not owned.
+  std::span<const float> node_weights = {};
 };
 
 /// The cheapest tree of the given width that can be made by merging nodes of a binary tree and turning subtrees into
@@ -101,5 +105,32 @@ Result<Optimizer> parse_optimizer(std::string_view text);
 
 /// Runs an optimizer. The same bits for every executor. Errors: out of memory.
 Result<tree::BinaryTree> apply_optimizer(tree::BinaryTree&& tree, const Optimizer& optimizer, Executor& executor);
+
+// ---- Measured rays ------------------------------------------------------------------------------------------------
+
+/// A binary tree with the wide tree's leaves, or these split down to single references (`splits_leaves`): children are
+/// merged pair by pair, the smallest common box first, leaves are cut where the surface area cost is least.
+/// `reference_boxes` are those of `wide.references`, inside their leaves. Any width and leaf size. Errors: a number of
+/// boxes that does not fit, out of memory. Deterministic, any depth.
+Result<tree::BinaryTree> expand_to_binary(const tree::WideTree& wide, std::span<const Box> reference_boxes,
+                                          std::size_t primitive_count, bool splits_references, Executor& executor,
+                                          bool splits_leaves = true);
+
+/// How often rays visit each node, as shares of the rays that visit the root: measured with segments, which are rays
+/// whose tmax is where they ended, and `prior` rays more at each node that go as the surface area says. What
+/// CollapseOptions::node_weights takes. Segments without a direction or interval count for nothing. The same for every
+/// executor. Error: out of memory.
+Result<std::vector<float>> node_visits(const tree::BinaryTree& tree, std::span<const Ray> segments, float prior,
+                                       Executor& executor);
+
+struct RestructureOptions {
+  int passes = 3;   ///< at most; ends early when nothing changes any more
+  float prior = 8;  ///< as for node_visits
+};
+
+/// The tree with its treelets rebuilt for fewer visits by `segments` (as for node_visits). The same references and
+/// leaves; the same for every executor. Error: out of memory.
+Result<tree::BinaryTree> restructure(const tree::BinaryTree& tree, std::span<const Ray> segments,
+                                     const RestructureOptions& options, Executor& executor);
 
 }  // namespace boxwood::optimizers

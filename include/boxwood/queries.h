@@ -111,6 +111,27 @@ Result<TraversalKernels> select_traversal(layouts::LayoutId layout, Mode mode, c
 /// Can Accel trace rays so in this layout? Default options and single, terminating rays never fail.
 Status check_traversal(layouts::LayoutId layout, const TraversalOptions& options);
 
+/// Prices of VisitCounts: opening a node and testing one block of a leaf.
+inline constexpr std::uint64_t kNodePrice = 3, kBlockPrice = 2;
+
+/// What rays do in a wide layout, child by child.
+struct VisitCounts {
+  struct Child {
+    std::uint32_t met = 0;        ///< rays that come to its node and meet its box
+    std::uint32_t successes = 0;  ///< of these, those that hit something below it
+    std::uint64_t cost = 0;       ///< what any-hit queries pay below it until they have a hit or have seen all
+  };
+  int width = 0;
+  std::vector<Child> children;     ///< `width` for each node, in the layout's order
+  std::uint64_t total_cost = 0;    ///< of all nodes and leaves that the rays meet
+  std::uint64_t any_hit_cost = 0;  ///< of any-hit queries over the whole tree
+};
+
+/// Follows rays into every box they meet within [tmin, tmax], also behind hits. With rays cut at their closest hits,
+/// `met` is what closest-hit queries visit that go to the nearest child first, and a success is the closest hit. Robust
+/// mode's tests. The same for every executor. Errors: the layout `linear`, out of memory.
+Result<VisitCounts> count_visits(const layouts::Layout& layout, std::span<const Ray> rays, Executor& executor);
+
 /// A closest hit by testing every triangle of the mesh in double precision (the determinant form of Moeller and
 /// Trumbore with inclusive edges; degenerate and non-finite triangles are passed over). The oracle of the tests.
 struct ExactHit {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "accel/encode_tree.h"
+#include "accel/optimize_layout.h"
 #include "boxwood/metrics.h"
 #include "boxwood/optimizers.h"
 #include "layouts/encode.h"
@@ -15,13 +17,22 @@ namespace {
 /// Rays a worker takes at a time: enough to make the hand-over free, few enough to share out uneven work.
 constexpr std::size_t kRaysPerChunk = 1024;
 
-Result<layouts::Layout> encode(layouts::LayoutId id, const tree::BinaryTree& tree, const MeshView& mesh,
-                               const AccelOptions& accel_options, Executor& executor) {
+Result<layouts::LayoutId> find_layout(const AccelOptions& options) {
+  return layouts::find(options.layout.empty() ? queries::default_layout(options.isa) : options.layout);
+}
+
+Status same_length(std::size_t rays, std::size_t results, const char* what) {
+  if (rays == results) return {};
+  return {ErrorCode::invalid_argument,
+          "there are " + std::to_string(rays) + " rays but room for " + std::to_string(results) + " " + what};
+}
+
+}  // namespace
+
+Result<layouts::Layout> encode_tree(layouts::LayoutId id, const tree::BinaryTree& tree, const MeshView& mesh,
+                                    optimizers::CollapseOptions options, Executor& executor) {
   if (id == layouts::LayoutId::linear) return layouts::encode_linear(tree, mesh, executor);
-  optimizers::CollapseOptions options;
   options.width = layouts::width(id);
-  options.node_cost = accel_options.node_cost;
-  options.max_leaf_blocks = accel_options.max_leaf_blocks;
   const bool quads = layouts::has_quads(id);
   if (quads) {
     // Pricing looks at the triangles, before the encoder could find one that is not there.
@@ -36,18 +47,6 @@ Result<layouts::Layout> encode(layouts::LayoutId id, const tree::BinaryTree& tre
   if (!wide) return wide.error();
   return quads ? layouts::encode_wide_quads(*wide, mesh, executor) : layouts::encode_wide(*wide, mesh, executor);
 }
-
-Result<layouts::LayoutId> find_layout(const AccelOptions& options) {
-  return layouts::find(options.layout.empty() ? queries::default_layout(options.isa) : options.layout);
-}
-
-Status same_length(std::size_t rays, std::size_t results, const char* what) {
-  if (rays == results) return {};
-  return {ErrorCode::invalid_argument,
-          "there are " + std::to_string(rays) + " rays but room for " + std::to_string(results) + " " + what};
-}
-
-}  // namespace
 
 struct Accel::State {
   layouts::Layout layout;
@@ -135,7 +134,10 @@ Result<Accel> Accel::from_tree(const MeshView& mesh, const tree::BinaryTree& tre
     auto fast = queries::select_batch(*id, queries::Mode::fast, *isa);
     if (!robust) return robust.error();
     if (!fast) return fast.error();
-    auto layout = encode(*id, tree, mesh, options, *state->executor);
+    optimizers::CollapseOptions collapse;
+    collapse.node_cost = options.node_cost;
+    collapse.max_leaf_blocks = options.max_leaf_blocks;
+    auto layout = encode_tree(*id, tree, mesh, std::move(collapse), *state->executor);
     if (!layout) return layout.error();
     state->layout = std::move(*layout);
     state->robust = *robust;
@@ -145,6 +147,30 @@ Result<Accel> Accel::from_tree(const MeshView& mesh, const tree::BinaryTree& tre
   } catch (const std::bad_alloc&) {
     return {ErrorCode::out_of_memory,
             "not enough memory to encode a tree of " + std::to_string(tree.nodes.size()) + " nodes"};
+  }
+}
+
+Result<OptimizedAccel> Accel::optimize(const RaySample& sample, const OptimizeOptions& options) const {
+  try {
+    const auto id = options.layout.empty() ? Result<layouts::LayoutId>(layout().id) : layouts::find(options.layout);
+    if (!id) return id.error();
+    auto robust = queries::select_batch(*id, queries::Mode::robust, isa());
+    auto fast = queries::select_batch(*id, queries::Mode::fast, isa());
+    if (!robust) return robust.error();
+    if (!fast) return fast.error();
+    auto optimized = optimize_layout(*this, sample, options, *id);
+    if (!optimized) return optimized.error();
+    auto state = std::make_unique<State>();
+    state->layout = std::move(optimized->layout);
+    state->robust = *robust;
+    state->fast = *fast;
+    state->isa = isa();
+    state->executor = state_->executor;
+    state->excluded = excluded_count();
+    return OptimizedAccel{Accel(std::move(state)), optimized->report};
+  } catch (const std::bad_alloc&) {
+    return {ErrorCode::out_of_memory,
+            "not enough memory to optimize a tree of " + std::to_string(reference_count()) + " references"};
   }
 }
 

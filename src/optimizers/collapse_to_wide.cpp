@@ -197,6 +197,10 @@ Result<tree::WideTree> collapse_to_wide(const tree::BinaryTree& tree, const Coll
     empty.first_child.push_back(0);
     return empty;
   }
+  if (!options.node_weights.empty() && options.node_weights.size() != tree.nodes.size())
+    return Error{ErrorCode::invalid_argument, "the binary tree has " + std::to_string(tree.nodes.size()) +
+                                                  " nodes but there are weights of " +
+                                                  std::to_string(options.node_weights.size())};
   const auto costs = price_forests(tree, options, executor);
   if (!costs) return costs.error();
   return Emitter(tree, options, *costs).run();

@@ -1,5 +1,5 @@
 // Cheapest forests by dynamic programming (Ylitie, Karras and Laine 2017, bib key ylitie2017, section 3.1; Pinto 2010,
-// bib key pinto2010). With a(n) the area of node n and w the width:
+// bib key pinto2010). With a(n) the area of node n, or the weight given for it, and w the width:
 //   leaf(n)   = a(n) * ceil(count / block), when the count is within the limit
 //   C(n, 1)   = min(leaf(n), a(n) * node_cost + D(n, w))
 //   D(n, i)   = min over k of C(left, k) + C(right, i - k)
@@ -78,10 +78,11 @@ class Programme {
         largest_leaf_(largest_leaf(options)),
         node_cost_(double(options.node_cost)),
         leaf_blocks_(options.leaf_blocks),
+        node_weights_(options.node_weights),
         out_(out) {
     // Points and segments have no area, and everything below them would be equally good. A trillionth of the root's
     // area on top of every node's makes fewer nodes and blocks better there and changes nothing elsewhere.
-    const double root_area = area(tree.nodes[0].bounds);
+    const double root_area = weight(0);
     least_area_ = root_area > 0 ? std::ldexp(root_area, -40) : 1;
   }
 
@@ -137,7 +138,7 @@ class Programme {
   /// C(n, 1) to C(n, width) of a node whose subtree is done: on top of the stack, or a leaf.
   bool close(std::uint32_t n, Stack& stack, Waiting& part, Costs& costs) const {
     const tree::Node& node = tree_.nodes[n];
-    const double node_area = area(node.bounds) + least_area_;
+    const double node_area = weight(n) + least_area_;
     if (node.is_leaf()) {
       part = {0, node.first, node.count};
       if (node.first > tree_.references.size() || node.count > tree_.references.size() - node.first) return false;
@@ -161,6 +162,10 @@ class Programme {
   }
 
  private:
+  double weight(std::uint32_t n) const {
+    return node_weights_.empty() ? area(tree_.nodes[n].bounds) : double(node_weights_[n]);
+  }
+
   /// Blocks of a leaf, or of all chunks of one above the limit.
   std::uint64_t blocks_of(std::uint32_t first, std::uint32_t count) const {
     if (!leaf_blocks_) return divide_up(count, block_);
@@ -185,6 +190,7 @@ class Programme {
   std::uint32_t block_, largest_leaf_;
   double node_cost_, least_area_;
   const std::function<std::uint32_t(std::span<const std::uint32_t>)>& leaf_blocks_;
+  std::span<const float> node_weights_;
   ForestCosts& out_;
 };
 

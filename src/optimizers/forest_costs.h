@@ -34,7 +34,7 @@ class Choice {
 struct ForestCosts {
   AlignedBuffer<Choice> choices;
   AlignedBuffer<std::uint32_t> counts;  ///< references below the node
-  double root_cost = 0;               ///< of the whole tree as one wide node or leaf, in units of area
+  double root_cost = 0;                 ///< of the whole tree as one wide node or leaf, in units of area
 
   static std::uint32_t pair_of(const tree::Node& node) { return (node.first - 1) / 2; }
 };

@@ -44,7 +44,7 @@ const Isa* find_isa(std::string_view name) {
 }
 
 bool has_batch_kernels(layouts::LayoutId layout) {
-  return layout == layouts::LayoutId::wide8 || layout == layouts::LayoutId::wide8_quads;
+  return layouts::width(layout) >= 8;
 }
 
 std::string join(const std::vector<std::string>& words) {
@@ -141,8 +141,10 @@ Result<BatchMethods> select_batch(layouts::LayoutId layout, Mode mode, std::stri
   methods.has_batch = has_batch_kernels(layout);
   const std::int64_t target = find_isa(*chosen)->target;
   if (methods.has_batch)
-    methods.batch = layout == layouts::LayoutId::wide8 ? wide8_batch_kernels(mode, target)
-                                                       : wide8_quads_batch_kernels(mode, target);
+    methods.batch = layout == layouts::LayoutId::wide8         ? wide8_batch_kernels(mode, target)
+                    : layout == layouts::LayoutId::wide8_quads ? wide8_quads_batch_kernels(mode, target)
+                    : layout == layouts::LayoutId::wide16      ? wide16_batch_kernels(mode, target)
+                                                               : wide16_quads_batch_kernels(mode, target);
   return methods;
 }
 
@@ -154,7 +156,7 @@ Status check_traversal(layouts::LayoutId layout, const TraversalOptions& options
   if (is_batch(options.traversal) && options.traversal != Traversal::batch) {
     if (has_batch_kernels(layout)) return {};
     return {ErrorCode::unsupported, std::string("the layout ") + layouts::name(layout) + " has no traversal " +
-                                        name(options.traversal) + "; it takes the layout wide8 or wide8-quads"};
+                                        name(options.traversal) + "; it takes a layout of 8 or 16 children a node"};
   }
   if (layout != layouts::LayoutId::linear)
     return {ErrorCode::unsupported, std::string("the layout ") + layouts::name(layout) + " has no traversal " +

@@ -16,12 +16,9 @@ namespace boxwood::queries::HWY_NAMESPACE {
 /// As many rays at a time as the instruction set has lanes, up to 16.
 using RayTag = hn::CappedTag<float, 16>;
 
-/// Up to 16 mask bits; the other mask_bits gives up to 8.
 template <class D>
 HWY_INLINE std::uint32_t packet_bits(D d, hn::Mask<D> mask) {
-  alignas(8) std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(d, mask, bytes);
-  return (bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8) & ((1u << hn::Lanes(d)) - 1);
+  return static_cast<std::uint32_t>(mask_bits(d, mask));
 }
 
 /// `limit`: the nearest hit's t so far, or tmax; minus infinity for rays that take no part, which no test passes.
@@ -146,8 +143,6 @@ struct alignas(64) PacketRays {
     s.tmin = tmin[slot], s.tmax = tmax[slot], s.t_scale = t_scale[slot];
     s.kx = kx, s.ky = ky, s.kz = kz;
     s.shear_x = shear_x[slot], s.shear_y = shear_y[slot], s.inverse_z = inverse_z[slot];
-    s.exact_shear_x = direction[kx][slot] / static_cast<double>(direction[kz][slot]);
-    s.exact_shear_y = direction[ky][slot] / static_cast<double>(direction[kz][slot]);
     return s;
   }
 };

@@ -1,0 +1,35 @@
+// The batch kernels of layout `wide16-quads`, for each instruction set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "queries/kernels/batch_wide16_quads.cpp"
+#include "queries/kernels/targets.h"
+// clang-format off
+#include <hwy/foreach_target.h>
+// clang-format on
+#include <hwy/highway.h>
+
+#include "queries/kernels/batch_kernels-inl.h"
+#include "queries/kernels/wide_quads-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace boxwood::queries::HWY_NAMESPACE {
+
+BatchKernels wide16_quads_batch_kernels(Mode mode) {
+  return mode == Mode::robust ? make_batch_kernels<16, QuadLeaf, true>() : make_batch_kernels<16, QuadLeaf, false>();
+}
+
+}  // namespace boxwood::queries::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include "queries/kernels/kernels.h"
+
+namespace boxwood::queries {
+
+HWY_EXPORT(wide16_quads_batch_kernels);
+
+BatchKernels wide16_quads_batch_kernels(Mode mode, std::int64_t target) {
+  return HWY_DISPATCH_TABLE(wide16_quads_batch_kernels)[dispatch_index(target)](mode);
+}
+
+}  // namespace boxwood::queries
+#endif
