@@ -90,6 +90,28 @@ class Rounds {
     return {};
   }
 
+  /// Every other ray of all sets teaches Accel::optimize, the others are timed: no decision about the tree saw them.
+  Status optimized(std::span<const Set* const> sets) {
+    std::vector<Ray> closest, any;
+    std::vector<Set> held_out;
+    for (const Set* set : sets) {
+      held_out.push_back({set->name, set->any, {}});
+      for (std::size_t i = 0; i < set->rays.size(); ++i)
+        (i % 2 ? held_out.back().rays : set->any ? any : closest).push_back(set->rays[i]);
+    }
+    fighters_.executor->set(fighters_.all);
+    auto result = fighters_.best.accel->optimize({.closest_hit = closest, .any_hit = any});
+    if (!result) return result.error();
+    const Own optimized{"optimized", {}, std::make_shared<const Accel>(std::move(result->accel))};
+    for (const Set& set : held_out) {
+      if (set.rays.empty()) continue;
+      Tracer ours{&optimized}, best{&fighters_.best};
+      if (Status status = measure_those_there(set, {&ours, &best}); !status) return status;
+      add("optimize", set, ours, {&best});
+    }
+    return {};
+  }
+
  private:
   const Plan& plan_;
   const Input& input_;
@@ -112,6 +134,12 @@ Status trace_all(const Plan& plan, const Input& input, Fighters& fighters, Scene
   if (!diffuse.rays.empty()) {
     step("diffuse");
     if (Status status = rounds.closest(diffuse, nullptr); !status) return status;
+  }
+  step("optimize");
+  const Set* const all[] = {&primary, &random, &diffuse, &occlusion};
+  if (Status status = rounds.optimized(all); !status) return status;
+  if (!diffuse.rays.empty()) {
+    step("diffuse, shuffled");
     diffuse.name = "diffuse, shuffled";
     shuffle(diffuse.rays, plan.seed);
     if (Status status = rounds.best_against("batch-incoherent", diffuse, Way::batch, Way::single); !status)
