@@ -29,6 +29,12 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
+TuneChoice choice_of(const char* builder) {
+  TuneChoice choice;
+  choice.build.builder = builder;
+  return choice;
+}
+
 class Search {
  public:
   Search(const Input& input, const TuneRaySets& rays, const TuneLimits& limits, const Session& session)
@@ -59,11 +65,11 @@ class Search {
   Status try_all() {
     const auto levels = quality_levels();
     for (std::size_t i = levels.size(); i-- > 0;)
-      if (Status status = attempt({.build = {levels[i].id, {}}}); !status) return status;
+      if (Status status = attempt(choice_of(levels[i].id)); !status) return status;
     for (const char* id : kBuilders)
       if (const auto* builder = builders::find(id);
           builder && input_.mesh.triangles.size() <= builder->largest_sensible)
-        if (Status status = attempt({.build = {id, {}}}); !status) return status;
+        if (Status status = attempt(choice_of(id)); !status) return status;
     if (Status status = vary_fastest(&Search::with_optimizing); !status) return status;
     for (const auto vary :
          {&Search::with_layouts, &Search::with_optimizers, &Search::with_presplits, &Search::with_settings})

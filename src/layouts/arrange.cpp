@@ -1,5 +1,6 @@
 // The same encoded tree with its children in another order within their nodes and its nodes and blocks in another order
 // in memory. O(nodes + blocks).
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ Layout arranged(const Layout& from, const Arrangement& how, std::size_t block_by
   to.node_count = from.node_count, to.leaf_count = from.leaf_count, to.reference_count = from.reference_count;
   to.nodes = AlignedBuffer<std::byte>(from.nodes.size());
   to.triangles = AlignedBuffer<std::byte>(from.triangles.size());
+  std::memset(to.nodes.data(), 0, to.nodes.bytes());  // nodes have bytes at their end that hold nothing
   const auto* in = reinterpret_cast<const WideNode<W>*>(from.nodes.data());
   auto* out = reinterpret_cast<WideNode<W>*>(to.nodes.data());
   std::vector<std::uint32_t> place(from.node_count);

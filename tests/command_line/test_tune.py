@@ -22,7 +22,7 @@ class Tune(CommandLineTest):
     def test_search(self):
         report = self.tune("--rays", "diffuse,occlusion", "--seconds", "1.5")
         self.assert_environment(report, "tune")
-        self.assertGreater(report["trained_rays"], 100)
+        self.assertGreater(report["trained_rays"], 20)
         self.assertLessEqual(abs(report["trained_rays"] - report["tested_rays"]), 2)
         candidates = report["candidates"]
         self.assertEqual((candidates[0]["builder"], candidates[0]["ratio"]), ("balanced", 1))
