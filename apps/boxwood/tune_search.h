@@ -24,7 +24,7 @@ struct TuneRaySets {
 struct TuneChoice {
   builders::BuildOptions build = AccelOptions{}.build;  ///< a builder or a quality level
   std::string presplit, optimizer;                      ///< empty: the level's, or none
-  std::string layout = AccelOptions{}.layout;
+  std::string layout = queries::default_layout();
   bool optimized = false;  ///< Accel::optimize behind it, for the rays to tune for
 
   std::string text() const;          ///< "sbvh, presplit evh:t=14, wide8, optimized"

@@ -104,8 +104,10 @@ TEST(Optimize, SameBitsForEveryExecutorAndInstructionSet) {
   std::optional<std::uint64_t> expected;
   for (const std::string& isa : queries::supported_isas())
     for (const int threads : {1, 3}) {
-      const auto accel = Accel::build(
-          mesh, {.build = {.builder = "sbvh"}, .isa = isa, .executor = std::make_shared<ThreadExecutor>(threads)});
+      const auto accel = Accel::build(mesh, {.build = {.builder = "sbvh"},
+                                             .layout = "wide16",
+                                             .isa = isa,
+                                             .executor = std::make_shared<ThreadExecutor>(threads)});
       ASSERT_TRUE(accel);
       const auto optimized = accel->optimize({sample, shadows});
       ASSERT_TRUE(optimized);

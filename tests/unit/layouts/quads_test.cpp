@@ -116,7 +116,8 @@ TEST(Quads, FullLeafOfAGridFillsItsBlocks) {
 
 TEST(Quads, LeavesArePricedByTheirQuads) {
   const auto ratio = [](const TriangleMesh& mesh) {
-    const auto quads = Accel::build(mesh, {.layout = "wide8-quads"}), wide8 = Accel::build(mesh, {.layout = "wide8"});
+    const auto quads = Accel::build(mesh, {.layout = "wide8-quads", .node_cost = 1.5f}),
+               wide8 = Accel::build(mesh, {.layout = "wide8", .node_cost = 1.5f});
     EXPECT_TRUE(quads && wide8);
     return double(quads->layout().bytes()) / double(wide8->layout().bytes());
   };
