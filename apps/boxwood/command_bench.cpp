@@ -51,8 +51,7 @@ void add_bench_command(CLI::App& program, Run& run) {
   auto options = std::make_shared<Options>();
   CLI::App& command = *program.add_subcommand("bench", "Measure builders, layouts and rivals on the same rays");
   options->add_to(command);
-  add_list(command, "-l,--layouts", options->layouts,
-           "linear, wide4, wide8 (the default), wide8-quads, wide16, wide16-quads, or all");
+  add_list(command, "-l,--layouts", options->layouts, "linear, wide4, wide8, wide8-quads, wide16, or all");
   add_list(
       command, "--rivals", options->rivals,
       "embree, embree:low, embree:medium, embree:high, with :packets behind; tinybvh, madmann; all that are installed");

@@ -63,7 +63,7 @@ void PipelineOptions::add_to(CLI::App& command) {
   add_settings_option(command, settings);
   add_presplit_option(command, presplit);
   add_optimizer_option(command, optimizer);
-  command.add_option("-l,--layout", layout, "Node layout: linear, wide4, wide8, wide8-quads, wide16 or wide16-quads")
+  command.add_option("-l,--layout", layout, "Node layout: linear, wide4, wide8, wide8-quads or wide16")
       ->type_name("NAME")
       ->capture_default_str();
 }

@@ -14,7 +14,7 @@
 
 namespace boxwood::layouts {
 
-enum class LayoutId { linear, wide4, wide8, wide8_quads, wide16, wide16_quads };
+enum class LayoutId { linear, wide4, wide8, wide8_quads, wide16 };
 
 /// One row of the registry of layouts.
 struct LayoutInfo {
@@ -119,7 +119,7 @@ Result<Layout> encode_linear(const tree::BinaryTree& tree, const MeshView& mesh,
 /// above.
 Result<Layout> encode_wide(const tree::WideTree& tree, const MeshView& mesh, Executor& executor);
 
-/// Encodes a tree of width 8 or 16 as `wide8-quads` or `wide16-quads`, pairing triangles of one leaf that have an edge
+/// Encodes a tree of width 8 as `wide8-quads`, pairing triangles of one leaf that have an edge
 /// in common. Errors as above, and a mesh of more than 2^29 triangles.
 Result<Layout> encode_wide_quads(const tree::WideTree& tree, const MeshView& mesh, Executor& executor);
 

@@ -34,9 +34,6 @@ class Decoder {
       case LayoutId::wide16:
         wide<16, TriangleBlock>();
         break;
-      case LayoutId::wide16_quads:
-        wide<16, QuadBlock>();
-        break;
     }
     out_.tree.first_child.push_back(std::uint32_t(out_.tree.children.size()));
     out_.tree.max_stack = layout_.max_stack;

@@ -14,8 +14,6 @@ constexpr LayoutInfo kLayouts[] = {
      "memory"},
     {LayoutId::wide16, "wide16",
      "448-byte nodes of 16 children: fewer steps for each ray; best for speed with AVX-512"},
-    {LayoutId::wide16_quads, "wide16-quads",
-     "wide16 with pairs of triangles in its leaves; best for small memory with AVX-512"},
 };
 
 }  // namespace
@@ -49,14 +47,13 @@ int width(LayoutId id) {
     case LayoutId::wide8_quads:
       return 8;
     case LayoutId::wide16:
-    case LayoutId::wide16_quads:
       return 16;
   }
   return 0;
 }
 
 bool has_quads(LayoutId id) {
-  return id == LayoutId::wide8_quads || id == LayoutId::wide16_quads;
+  return id == LayoutId::wide8_quads;
 }
 
 }  // namespace boxwood::layouts

@@ -1,6 +1,6 @@
 // Layouts `wide4`, `wide8` and `wide16`: nodes that hold the boxes of all their children plane by plane, so that one
 // SIMD operation tests them together (Dammertz, Hanika and Keller 2008, bib key qbvh; Ernst and Greiner 2008; Wald,
-// Benthin and Boulos 2008), over blocks of four triangles stored the same way; `wide8-quads` and `wide16-quads`, the
+// Benthin and Boulos 2008), over blocks of four triangles stored the same way; `wide8-quads`, the
 // same nodes over blocks of four quads (quads.cpp). O(nodes + triangles), deterministic, parallel.
 #include <limits>
 #include <vector>
@@ -188,9 +188,7 @@ Result<Layout> encode_wide_quads(const tree::WideTree& tree, const MeshView& mes
     return {ErrorCode::too_large,
             "layouts with quads hold meshes of at most 2^29 triangles, not " + std::to_string(mesh.triangle_count)};
   if (tree.width == 8) return encode<8, QuadBlocks>(LayoutId::wide8_quads, tree, mesh, executor);
-  if (tree.width == 16) return encode<16, QuadBlocks>(LayoutId::wide16_quads, tree, mesh, executor);
-  return {ErrorCode::invalid_argument,
-          "layouts with quads have 8 or 16 children a node, not " + std::to_string(tree.width)};
+  return {ErrorCode::invalid_argument, "layouts with quads have 8 children a node, not " + std::to_string(tree.width)};
 }
 
 }  // namespace boxwood::layouts

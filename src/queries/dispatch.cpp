@@ -125,8 +125,6 @@ Result<Kernels> select_kernels(layouts::LayoutId layout, Mode mode, std::string_
       return wide8_quads_kernels(mode, target);
     case layouts::LayoutId::wide16:
       return wide16_kernels(mode, target);
-    case layouts::LayoutId::wide16_quads:
-      return wide16_quads_kernels(mode, target);
   }
   return {ErrorCode::unknown_name, "there is no layout number " + std::to_string(static_cast<int>(layout))};
 }
@@ -143,8 +141,7 @@ Result<BatchMethods> select_batch(layouts::LayoutId layout, Mode mode, std::stri
   if (methods.has_batch)
     methods.batch = layout == layouts::LayoutId::wide8         ? wide8_batch_kernels(mode, target)
                     : layout == layouts::LayoutId::wide8_quads ? wide8_quads_batch_kernels(mode, target)
-                    : layout == layouts::LayoutId::wide16      ? wide16_batch_kernels(mode, target)
-                                                               : wide16_quads_batch_kernels(mode, target);
+                                                               : wide16_batch_kernels(mode, target);
   return methods;
 }
 

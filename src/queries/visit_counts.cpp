@@ -155,9 +155,6 @@ Result<VisitCounts> count_visits(const Layout& layout, std::span<const Ray> rays
     case layouts::LayoutId::wide16:
       record<16, layouts::TriangleBlock>(layout, rays, sums, counts, executor);
       break;
-    case layouts::LayoutId::wide16_quads:
-      record<16, layouts::QuadBlock>(layout, rays, sums, counts, executor);
-      break;
   }
   counts.children.reserve(sums.size());
   for (const Sums& sum : sums) counts.children.push_back({sum.met, sum.successes, sum.cost});

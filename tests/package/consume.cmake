@@ -4,7 +4,9 @@
 #   GENERATOR, COMPILER, LAUNCHER                        as in the build that asks
 # With both PREFIX and BOXWOOD, the core is first built as a shared library and installed into PREFIX.
 set(common -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}"
-  -DCMAKE_BUILD_TYPE=Debug)
+  -DCMAKE_BUILD_TYPE=Debug
+  # What is tested here is the build description, so the kernels are compiled for few instruction sets.
+  -DCMAKE_CXX_FLAGS=-DBOXWOOD_FEW_TARGETS)
 
 function(run)
   execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY)

@@ -30,6 +30,5 @@ struct BatchKernels {
 BatchKernels wide8_batch_kernels(Mode mode, std::int64_t target);
 BatchKernels wide8_quads_batch_kernels(Mode mode, std::int64_t target);
 BatchKernels wide16_batch_kernels(Mode mode, std::int64_t target);
-BatchKernels wide16_quads_batch_kernels(Mode mode, std::int64_t target);
 
 }  // namespace boxwood::queries

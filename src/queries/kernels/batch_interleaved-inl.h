@@ -4,13 +4,13 @@
 //
 //   1. each ray pops an entry and goes onto the list of nodes, of leaves or of finished rays; an entry that lies behind
 //      the ray's best hit is dropped by going onto none; what was popped is prefetched
-//   2. nodes: all eight children are tested, sorted by entry distance with a sorting network and stored on the ray's
+//   2. nodes: all children are tested, sorted by entry distance with a sorting network and stored on the ray's
 //      stack, those that were missed above its new end
 //   3. leaves: one block of triangles each; further blocks of the leaf go back onto the stack
 //   4. finished rays report and hand their place to the next one
 //
-// Entry distances lose their three lowest bits to the lane's number. They become smaller by that, so an entry is never
-// dropped too early. Any-hit rays need no distances: their children stand in the order in which to try them.
+// Entry distances lose their three or four lowest bits to the lane's number. They become smaller by that, so an entry
+// is never dropped too early. Any-hit rays need no distances: their children stand in the order in which to try them.
 #if defined(BOXWOOD_QUERIES_KERNELS_BATCH_INTERLEAVED_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BOXWOOD_QUERIES_KERNELS_BATCH_INTERLEAVED_INL_H_
 #undef BOXWOOD_QUERIES_KERNELS_BATCH_INTERLEAVED_INL_H_
@@ -28,9 +28,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace boxwood::queries::HWY_NAMESPACE {
 
-using EightTag = hn::CappedTag<float, 8>;
-/// The sorting network is one of eight lanes.
-inline constexpr bool kHasEightLanes = HWY_MAX_BYTES >= 32;
+/// A node's children are sorted in one vector.
+template <int W>
+inline constexpr bool kInterleaves = (W == 8 || W == 16) && HWY_MAX_BYTES >= 4 * W;
 
 #if HWY_MAX_BYTES >= 32
 /// For each set of lanes its members, the last one first.
@@ -42,7 +42,7 @@ inline constexpr auto kBackwards = [] {
   return table;
 }();
 
-/// Sorts eight keys, largest first: a bitonic network of six layers.
+/// Sorts eight keys, largest first, with a bitonic network of six layers, or sixteen with one of ten.
 template <class VI>
 HWY_INLINE VI sort_descending(VI v) {
   const hn::DFromV<VI> di;
@@ -56,12 +56,24 @@ HWY_INLINE VI sort_descending(VI v) {
   };
   v = by_one(v);
   v = by_one(by_pairs(v, hn::Shuffle0123(v)));
+#if HWY_MAX_BYTES >= 64
+  if constexpr (hn::MaxLanes(di) == 16) {
+    const auto by_blocks = [&](VI x, VI other)
+                               HWY_ATTR { return hn::OddEvenBlocks(hn::Min(x, other), hn::Max(x, other)); };
+    v = by_blocks(v, hn::SwapAdjacentBlocks(hn::Shuffle0123(v)));
+    v = by_one(by_pairs(v, hn::Shuffle1032(v)));
+    const auto turned = hn::Reverse(di, v);
+    v = hn::ConcatUpperLower(di, hn::Min(v, turned), hn::Max(v, turned));
+    v = by_blocks(v, hn::SwapAdjacentBlocks(v));
+    return by_one(by_pairs(v, hn::Shuffle1032(v)));
+  }
+#endif
   const auto turned = hn::Reverse(di, v);
   v = hn::ConcatUpperLower(di, hn::Min(v, turned), hn::Max(v, turned));
   return by_one(by_pairs(v, hn::Shuffle1032(v)));
 }
 
-template <class Leaf, bool kRobust, bool kAny>
+template <int W, class Leaf, bool kRobust, bool kAny>
 class Interleaved {
  public:
   static constexpr std::uint32_t kFlights = 16;
@@ -69,14 +81,14 @@ class Interleaved {
   Interleaved(const Layout& layout, const Ray* rays, std::size_t count, Hit* hits, Vec3* normals,
               std::uint8_t* occluded)
       : layout_(layout),
-        nodes_(reinterpret_cast<const WideNode<8>*>(layout.nodes.data())),
+        nodes_(reinterpret_cast<const WideNode<W>*>(layout.nodes.data())),
         blocks_(reinterpret_cast<const Block*>(layout.triangles.data())),
         rays_(rays),
         count_(count),
         hits_(hits),
         normals_(normals),
         occluded_(occluded),
-        depth_((layout.max_stack + 2 * 8 + 15) / 16 * 16),
+        depth_((layout.max_stack + 2 * W + 15) / 16 * 16),
         memory_(std::make_unique_for_overwrite<std::uint32_t[]>(2 * depth_ * kFlights)) {}
 
   /// Gives the number of entries popped.
@@ -134,11 +146,11 @@ class Interleaved {
 
   HWY_INLINE void prefetch(std::uint32_t word, bool is_leaf) const {
     // Numbers, since one of the two is no address of anything.
-    const std::uintptr_t node = reinterpret_cast<std::uintptr_t>(nodes_) + std::uintptr_t{word} * sizeof(WideNode<8>);
+    const std::uintptr_t node = reinterpret_cast<std::uintptr_t>(nodes_) + std::uintptr_t{word} * sizeof(WideNode<W>);
     const std::uintptr_t block =
         reinterpret_cast<std::uintptr_t>(blocks_) + std::uintptr_t{layouts::leaf_first(word)} * sizeof(Block);
     const auto* address = reinterpret_cast<const char*>(is_leaf ? block : node);
-    for (int line = 0; line < 4; ++line) hwy::Prefetch(address + 64 * line);
+    for (int line = 0; line < W / 2; ++line) hwy::Prefetch(address + 64 * line);
   }
 
   /// Gives the next ray to a place; false when there is none. Rays that can hit nothing are answered here.
@@ -182,11 +194,12 @@ class Interleaved {
   }
 
   HWY_INLINE void visit_node(std::uint32_t slot) {
-    const EightTag d;
-    const hn::RebindToSigned<EightTag> di;
-    const hn::RebindToUnsigned<EightTag> du;
+    using Tag = hn::CappedTag<float, W>;
+    const Tag d;
+    const hn::RebindToSigned<Tag> di;
+    const hn::RebindToUnsigned<Tag> du;
     const RaySetup& ray = flights_[slot].setup;
-    const WideNode<8>& node = nodes_[word_[slot]];
+    const WideNode<W>& node = nodes_[word_[slot]];
     const auto entry = [&](int axis) HWY_ATTR {
       return hn::MulAdd(hn::Load(d, node.planes[ray.entry_plane[axis]]), hn::Set(d, ray.reciprocal[axis]),
                         hn::Set(d, ray.entry_add[axis]));
@@ -200,14 +213,18 @@ class Interleaved {
     const auto hit = hn::Le(near, far);
     const auto children = hn::Load(du, node.child);
     std::uint32_t* const words = words_[slot] + top_[slot];
-    if constexpr (kAny) {
+    if constexpr (kAny && W == 16) {
+      const auto turned = hn::MaskFromVec(hn::Reverse(d, hn::VecFromMask(d, hit)));
+      hn::StoreU(hn::Compress(hn::Reverse(du, children), hn::RebindMask(du, turned)), du, words);
+      top_[slot] += static_cast<std::uint32_t>(hn::CountTrue(d, hit));
+    } else if constexpr (kAny) {
       const std::uint64_t bits = mask_bits(d, hit);
       const hn::Rebind<std::uint8_t, decltype(du)> bytes;
       const auto lanes = hn::PromoteTo(du, hn::Load(bytes, kBackwards[bits].data()));
       hn::StoreU(hn::TableLookupLanes(children, hn::IndicesFromVec(du, lanes)), du, words);
       top_[slot] += static_cast<std::uint32_t>(std::popcount(bits));
     } else {
-      const auto lanes = hn::Iota(di, 0), low_bits = hn::Set(di, 7);
+      const auto lanes = hn::Iota(di, 0), low_bits = hn::Set(di, W - 1);
       const auto keys = hn::Or(hn::AndNot(low_bits, hn::BitCast(di, near)), lanes);
       const auto sorted = sort_descending(hn::IfThenElse(hn::RebindMask(di, hit), keys, hn::Set(di, -1)));
       hn::StoreU(hn::TableLookupLanes(children, hn::IndicesFromVec(du, hn::BitCast(du, hn::And(sorted, low_bits)))), du,
@@ -231,7 +248,7 @@ class Interleaved {
   }
 
   const Layout& layout_;
-  const WideNode<8>* nodes_;
+  const WideNode<W>* nodes_;
   const Block* blocks_;
   const Ray* rays_;
   std::size_t count_, next_ = 0;
@@ -246,12 +263,13 @@ class Interleaved {
   Flight flights_[kFlights];
 };
 
-#endif  // eight lanes
+#endif  // at least eight lanes
 
 template <int W, class Leaf, bool kRobust>
 std::size_t interleaved_closest(const Layout& layout, const Ray* rays, std::size_t count, Hit* hits, Vec3* normals) {
 #if HWY_MAX_BYTES >= 32
-  if constexpr (W == 8) return Interleaved<Leaf, kRobust, false>(layout, rays, count, hits, normals, nullptr).run();
+  if constexpr (kInterleaves<W>)
+    return Interleaved<W, Leaf, kRobust, false>(layout, rays, count, hits, normals, nullptr).run();
 #endif
   closest<W, Leaf, kRobust, false>(layout, rays, count, hits, normals, nullptr);
   return 0;
@@ -260,7 +278,8 @@ std::size_t interleaved_closest(const Layout& layout, const Ray* rays, std::size
 template <int W, class Leaf, bool kRobust>
 std::size_t interleaved_any(const Layout& layout, const Ray* rays, std::size_t count, std::uint8_t* occluded) {
 #if HWY_MAX_BYTES >= 32
-  if constexpr (W == 8) return Interleaved<Leaf, kRobust, true>(layout, rays, count, nullptr, nullptr, occluded).run();
+  if constexpr (kInterleaves<W>)
+    return Interleaved<W, Leaf, kRobust, true>(layout, rays, count, nullptr, nullptr, occluded).run();
 #endif
   any<W, Leaf, kRobust, false>(layout, rays, count, occluded, nullptr);
   return 0;

@@ -23,7 +23,7 @@ BatchKernels make_batch_kernels() {
       },
       interleaved_closest<W, Leaf, kRobust>,
       interleaved_any<W, Leaf, kRobust>,
-      kHasEightLanes && W == 8,
+      kInterleaves<W>,
   };
 }
 

@@ -12,7 +12,6 @@ Kernels wide4_kernels(Mode mode, std::int64_t target);
 Kernels wide8_kernels(Mode mode, std::int64_t target);
 Kernels wide8_quads_kernels(Mode mode, std::int64_t target);
 Kernels wide16_kernels(Mode mode, std::int64_t target);
-Kernels wide16_quads_kernels(Mode mode, std::int64_t target);
 
 /// The other ways through the linear layout. Single rays that hits do not end, and packets.
 TraversalKernels unending_kernels(Mode mode);

@@ -103,7 +103,7 @@ void expect_the_answers_of_single_rays(const Accel& accel, std::span<const Ray> 
 }
 
 void expect_in_all_layouts(const MeshView& mesh, std::span<const Ray> rays, const std::string& where) {
-  for (const char* layout : {"wide8", "wide8-quads"})
+  for (const char* layout : {"wide8", "wide8-quads", "wide16"})
     for (const std::string& isa : queries::supported_isas())
       expect_the_answers_of_single_rays(make(mesh, layout, isa), rays, where + ", " + layout);
 }
@@ -116,7 +116,7 @@ TEST(Batch, FindsWhatSingleRaysFindWhateverTheirOrder) {
 
 TEST(Batch, PicturesRowByRow) {
   const TriangleMesh mesh = test::icosphere(3);
-  for (const char* layout : {"wide8", "wide8-quads"})
+  for (const char* layout : {"wide8", "wide8-quads", "wide16"})
     for (const bool lights : {false, true}) {
       const Accel accel = make(mesh, layout);
       // Rows that are and are not whole tiles, an unfinished last row, and too few rays to look for rows.
@@ -156,7 +156,7 @@ TEST(Batch, NothingLeaksAtAnyScale) {
       const TriangleMesh mesh = test::icosphere(2, scale, center);
       std::vector<Ray> rays;
       for (const Vec3& corner : mesh.vertices) rays.push_back({center, 0, corner - center, kInfinity});
-      for (const char* layout : {"wide8", "wide8-quads"}) {
+      for (const char* layout : {"wide8", "wide8-quads", "wide16"}) {
         const Accel accel = make(mesh, layout);
         for (const Traversal traversal : kBatches) {
           std::vector<Hit> hits(rays.size());
@@ -191,7 +191,7 @@ TEST(Batch, FlatScenesDeepTreesSingleTrianglesAndNoneAtAll) {
       mesh.vertices.push_back(size * corner);
     mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
-  for (const char* layout : {"wide8", "wide8-quads"})
+  for (const char* layout : {"wide8", "wide8-quads", "wide16"})
     expect_the_answers_of_single_rays(make(mesh, layout, {}, "middle"), rays, "deep");
 }
 
