@@ -13,7 +13,7 @@ constexpr QualityLevel kLevels[] = {
      .builder = "hlbvh",
      .settings = {},
      .optimizer = "none",
-     .build_cost = "0.6 of balanced",
+     .build_cost = "0.6",
      .memory = "as balanced"},
     {.id = "balanced",
      .summary = "the default: quick to build, good to trace",
@@ -29,8 +29,8 @@ constexpr QualityLevel kLevels[] = {
      .builder = "sbvh",
      .settings = {},
      .optimizer = "reinsertion",
-     .build_cost = "5 to 7 of balanced",
-     .memory = "up to 1.3 of balanced"},
+     .build_cost = "5 to 7",
+     .memory = "up to 1.3 times balanced"},
 };
 
 std::string known_levels() {
