@@ -1,8 +1,7 @@
 # Configures, builds and runs a project that uses Boxwood, starting from nothing.
 #   SOURCE        the project                            BUILD_FOLDER  where to build it
 #   PREFIX        where Boxwood is installed, or empty   BOXWOOD       Boxwood's sources, or empty
-#   GENERATOR, COMPILER, LAUNCHER                        as in the build that asks
-# With both PREFIX and BOXWOOD, the core is first built as a shared library and installed into PREFIX.
+#   CORE_ONLY     ON where PREFIX has no components      GENERATOR, COMPILER, LAUNCHER  as in the build that asks
 set(common -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}"
   -DCMAKE_BUILD_TYPE=Debug
   # What is tested here is the build description, so the kernels are compiled for few instruction sets.
@@ -13,16 +12,7 @@ function(run)
 endfunction()
 
 file(REMOVE_RECURSE ${BUILD_FOLDER})
-if(PREFIX AND BOXWOOD)
-  file(REMOVE_RECURSE ${PREFIX})
-  set(core ${BUILD_FOLDER}/core)
-  run(${CMAKE_COMMAND} -S ${BOXWOOD} -B ${core} ${common} -DBUILD_SHARED_LIBS=ON -DBOXWOOD_IO=OFF -DBOXWOOD_RENDER=OFF
-    -DBOXWOOD_APPS=OFF -DBOXWOOD_TESTS=OFF -DBOXWOOD_EXAMPLES=OFF)
-  run(${CMAKE_COMMAND} --build ${core})
-  run(${CMAKE_COMMAND} --install ${core} --prefix ${PREFIX})
-  list(APPEND common -DCORE_ONLY=ON)
-endif()
 run(${CMAKE_COMMAND} -S ${SOURCE} -B ${BUILD_FOLDER}/consumer ${common} "-DCMAKE_PREFIX_PATH=${PREFIX}"
-  "-DBOXWOOD=${BOXWOOD}")
+  "-DBOXWOOD=${BOXWOOD}" -DCORE_ONLY=${CORE_ONLY})
 run(${CMAKE_COMMAND} --build ${BUILD_FOLDER}/consumer)
 run(${CMAKE_CTEST_COMMAND} --test-dir ${BUILD_FOLDER}/consumer --output-on-failure --no-tests=error)

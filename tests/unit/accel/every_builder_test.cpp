@@ -5,6 +5,7 @@
 
 #include "boxwood/accel.h"
 #include "boxwood/metrics.h"
+#include "support/effort.h"
 #include "support/meshes.h"
 
 namespace boxwood {
@@ -53,14 +54,14 @@ std::vector<Ray> rays_through(const TriangleMesh& mesh, const Box& bounds, std::
 
 Case make_case(const char* scene) {
   Case c;
-  c.mesh = mesh::make_scene(scene, {.triangles = 2000, .seed = 7, .rotate = {30, 40, 20}})->mesh;
+  c.mesh = mesh::make_scene(scene, {.triangles = test::effort(2000, 4), .seed = 7, .rotate = {30, 40, 20}})->mesh;
   const MeshView view = c.mesh;
   Box bounds;
   for (std::uint32_t i = 0; i < view.triangle_count; ++i) {
     c.boxes.push_back(view.triangle(i).bounds());
     bounds.grow(c.boxes.back());
   }
-  c.rays = rays_through(c.mesh, bounds, 2000);
+  c.rays = rays_through(c.mesh, bounds, test::effort(2000, 2));
   c.hits.resize(c.rays.size());
   EXPECT_TRUE(Accel::from_tree(view, one_leaf(c.boxes))->closest_hits(c.rays, c.hits));
   return c;
@@ -166,6 +167,7 @@ TEST_P(EveryBuilder, GrowthIsKept) {
 
 // Long triangles askew to the axes are what splitting is for, given room.
 TEST_P(EveryBuilder, SplittingPays) {
+  if (test::kInstrumented) GTEST_SKIP() << "the scene is too small there";
   SequentialExecutor executor;
   const Case& c = cases()[0];
   const auto whole = builders::build(*refs::make_references(c.mesh, executor), {"sweep-sah", {}}, {executor});

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "boxwood/accel.h"
+#include "support/effort.h"
 #include "support/meshes.h"
 
 namespace boxwood {
@@ -11,8 +12,8 @@ namespace {
 /// Small scenes with what pre-splits are for: turned architecture, needles, everything at once.
 std::vector<TriangleMesh> small_scenes() {
   std::vector<TriangleMesh> meshes;
-  meshes.push_back(mesh::make_scene("atrium", {.triangles = 400, .rotate = {30, 40, 20}})->mesh);
-  meshes.push_back(mesh::make_scene("spaceship", {.triangles = 400})->mesh);
+  meshes.push_back(mesh::make_scene("atrium", {.triangles = test::effort(400, 2), .rotate = {30, 40, 20}})->mesh);
+  meshes.push_back(mesh::make_scene("spaceship", {.triangles = test::effort(400, 2)})->mesh);
   meshes.push_back(test::soup(150, 5));
   return meshes;
 }

@@ -1,5 +1,6 @@
 // Files with flipped, lost and doubled bytes. Whatever comes back, nothing may crash, and what is read must be sound.
 // The mutations come from a fixed generator, so a failure names a file that can be made again.
+#include "support/effort.h"
 #include "unit/io/scene_file_builder.h"
 
 namespace boxwood::io::test {
@@ -35,9 +36,9 @@ class Mutations : public InFolder {
     return bytes;
   }
 
-  void expect_sound_meshes(const std::string& name, const std::string& original, int count) {
+  void expect_sound_meshes(const std::string& name, const std::string& original, std::size_t count) {
     ASSERT_TRUE(read_mesh(file(name, original))) << "the original itself";
-    for (int i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
       SCOPED_TRACE(name + ", mutation " + std::to_string(i));
       const auto loaded = read_mesh(file(name, mutate(original)));
       if (!loaded) {
@@ -87,7 +88,7 @@ TEST_F(Mutations, Obj) {
   expect_sound_meshes("a.obj",
                       "# comment\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvn 0 0 1\no one\nusemtl m\n"
                       "f 1 2 3\nf 1/1/1 2/1/1 4/1/1\ng two\nf -4//1 -3//1 -2//1\nl 1 2\nf 1 2 3 4\n",
-                      500);
+                      boxwood::test::effort(500, 4));
 }
 
 TEST_F(Mutations, AsciiStl) {
@@ -95,7 +96,7 @@ TEST_F(Mutations, AsciiStl) {
                       "solid one\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1.5 0\nendloop\n"
                       "endfacet\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 0 1e-3\nendloop\n"
                       "endfacet\nendsolid one\n",
-                      500);
+                      boxwood::test::effort(500, 4));
 }
 
 TEST_F(Mutations, BinaryStl) {

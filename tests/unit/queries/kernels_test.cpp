@@ -5,6 +5,7 @@
 
 #include "boxwood/accel.h"
 #include "boxwood/render.h"
+#include "support/effort.h"
 #include "support/meshes.h"
 
 namespace boxwood {
@@ -94,7 +95,7 @@ TEST(Kernels, AgreeWithBruteForceOnSoup) {
 
 TEST(Kernels, AllVariantsGiveTheSameBits) {
   const TriangleMesh mesh = test::soup(5000, 7);
-  const auto rays = random_rays(20000, 8);
+  const auto rays = random_rays(test::effort(20000, 10), 8);
   for (Mode mode : {Mode::robust, Mode::fast}) {
     const auto expected = trace(make(mesh, {"linear", "scalar"}), rays, mode);
     for (const Variant& variant : variants())
@@ -111,7 +112,8 @@ TEST(Kernels, AllVariantsGiveTheSameBits) {
 TEST(Kernels, RaysFromSurfacesDoNotDependOnTheBuilder) {
   const auto scene = mesh::make_scene("atrium", {.triangles = 20000});
   ASSERT_TRUE(scene);
-  const auto primary = render::primary_rays(scene->view, 300, 300);
+  const int size = static_cast<int>(test::effort(300, 4));
+  const auto primary = render::primary_rays(scene->view, size, size);
   ASSERT_TRUE(primary);
   const auto rays = render::diffuse_rays(make(scene->mesh, {"wide8", {}}), *primary, 1);
   const auto expected = trace(make(scene->mesh, {"linear", "scalar"}, "middle"), rays, Mode::robust);
@@ -123,7 +125,7 @@ TEST(Kernels, RaysFromSurfacesDoNotDependOnTheBuilder) {
 
 TEST(Kernels, AnyHitAgreesWithClosestHit) {
   const TriangleMesh mesh = test::soup(3000, 9);
-  const auto rays = random_rays(10000, 10);
+  const auto rays = random_rays(test::effort(10000, 10), 10);
   for (const Variant& variant : variants()) {
     const Accel accel = make(mesh, variant);
     for (Mode mode : {Mode::robust, Mode::fast}) {
@@ -179,7 +181,7 @@ TEST(Kernels, RobustModeLosesNoRayInsideAClosedSurface) {
     for (const Variant& variant : variants()) {
       const Accel accel = make(mesh, variant);
       for (auto aim : {test::Aim::vertices, test::Aim::edges, test::Aim::random}) {
-        const auto rays = test::rays_from_inside(mesh, center, radius, aim, 10000, 5);
+        const auto rays = test::rays_from_inside(mesh, center, radius, aim, test::effort(10000, 10), 5);
         std::size_t lost = 0;
         for (const Hit& hit : trace(accel, rays, Mode::robust)) lost += !hit;
         EXPECT_EQ(lost, 0u) << variant.layout << " " << variant.isa << " aim " << static_cast<int>(aim) << " radius "
