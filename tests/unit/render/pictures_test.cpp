@@ -7,7 +7,6 @@
 #include "boxwood/render.h"
 #include "render/color.h"
 #include "render/color_scale.h"
-#include "support/effort.h"
 #include "test_meshes.h"
 
 namespace boxwood::render {
@@ -281,7 +280,7 @@ TEST(Render, SameBitsOnEveryExecutor) {
   TriangleMesh mesh = icosphere(3);
   add_quad(mesh, {-3, -3, -1}, {6, 0, 0}, {0, 6, 0});
   const View view{.eye = {2, 2, 3}, .look_at = {0, 0, 0}, .fov = 50};
-  const int width = test::kInstrumented ? 160 : 320, height = 3 * width / 4;
+  const int width = 320, height = 240;
   for (const Shade shade : kAllShades) {
     const Image reference = picture(build(mesh, std::make_shared<SequentialExecutor>()), view, width, height, shade);
     EXPECT_GT(colors(reference).size(), 20u);
