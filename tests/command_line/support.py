@@ -11,6 +11,7 @@ import tempfile
 import unittest
 
 PROGRAM = os.environ["BOXWOOD_PROGRAM"]
+INSTRUMENTED = "BOXWOOD_INSTRUMENTED" in os.environ  # slow to start
 MISS = 4294967295
 
 CUBE_VERTICES = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]

@@ -7,7 +7,6 @@
 #include <atomic>
 #include <thread>
 
-#include "support/effort.h"
 #include "unit/builders/box_count.h"
 #include "unit/builders/reference_shapes.h"
 
@@ -84,7 +83,7 @@ TEST(Build, ProgressGrowsToOneAndNeverRunsTwiceAtOnce) {
       shares.push_back(share);
       inside.fetch_sub(1);
     };
-    const auto boxes = testing::soup(testing::box_count(info, test::effort(150000, 2), 6000), 6);
+    const auto boxes = testing::soup(testing::box_count(info, 150000, 6000), 6);
     const auto tree = builders::build(testing::reference_set(boxes), {info.id, {}}, context);
     ASSERT_TRUE(tree);
     ASSERT_FALSE(shares.empty()) << info.id;

@@ -2,10 +2,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include <algorithm>
-
 #include "boxwood/builders.h"
-#include "support/effort.h"
 #include "unit/builders/box_count.h"
 #include "unit/builders/reference_shapes.h"
 
@@ -21,8 +18,6 @@ bool equal_bits(const tree::BinaryTree& a, const tree::BinaryTree& b) {
 class BuilderDeterminism : public ::testing::TestWithParam<std::size_t> {
  protected:
   static std::size_t count(std::size_t wanted, std::size_t few) {
-    // Under a sanitizer hardly more than is worked on in parallel.
-    if (test::kInstrumented) wanted = std::min<std::size_t>(wanted, 70000), few = std::min<std::size_t>(few, 4500);
     return testing::box_count(builders::registry()[GetParam()], wanted, few);
   }
 
