@@ -3,8 +3,8 @@
 #   PREFIX        where Boxwood is installed, or empty   BOXWOOD       Boxwood's sources, or empty
 #   CORE_ONLY     ON where PREFIX has no components      GENERATOR, COMPILER, LAUNCHER  as in the build that asks
 set(common -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}"
-  -DCMAKE_BUILD_TYPE=Debug
-  # What is tested here is the build description, so the kernels are compiled for few instruction sets.
+  # What is tested here is the build description: nothing is optimised, without symbols, kernels for few instruction sets.
+  -DCMAKE_BUILD_TYPE=
   -DCMAKE_CXX_FLAGS=-DBOXWOOD_FEW_TARGETS)
 
 function(run)

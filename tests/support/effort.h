@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 namespace boxwood::test {
 
@@ -16,6 +17,11 @@ inline constexpr bool kInstrumented = false;
 /// `count`, or one `part`-th of it under a sanitizer: what is wrong with memory shows on the first rays or never.
 constexpr std::size_t effort(std::size_t count, std::size_t part) {
   return kInstrumented ? count / part : count;
+}
+
+/// The numbers of threads that must give what no threads give; under a sanitizer only the largest.
+inline std::vector<int> thread_counts() {
+  return kInstrumented ? std::vector{8} : std::vector{1, 2, 8};
 }
 
 }  // namespace boxwood::test

@@ -187,7 +187,7 @@ TEST_P(EveryBuilder, ThreadsChangeNothing) {
   SequentialExecutor sequential;
   const auto expected = build(mesh, {}, sequential);
   ASSERT_TRUE(expected) << expected.error().message;
-  for (const int threads : {2, 8}) {
+  for (const int threads : test::thread_counts()) {
     ThreadExecutor executor(threads);
     const auto tree = build(mesh, {}, executor);
     ASSERT_TRUE(tree) << tree.error().message;

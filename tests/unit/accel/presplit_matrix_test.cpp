@@ -55,7 +55,7 @@ TEST_P(PresplitMatrix, TreesAreValidAndTheSameForEveryNumberOfThreads) {
       EXPECT_TRUE(tree.splits_references);
       const Status valid = tree::validate(tree, {.primitive_boxes = boxes});
       EXPECT_TRUE(valid) << valid.error().message;
-      for (const int threads : {2, 8}) {
+      for (const int threads : test::thread_counts()) {
         ThreadExecutor executor(threads);
         EXPECT_EQ(tree::hash(build(mesh, presplit, executor)), tree::hash(tree)) << threads;
       }

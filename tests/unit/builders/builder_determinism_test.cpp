@@ -3,6 +3,7 @@
 #include <tbb/global_control.h>
 
 #include "boxwood/builders.h"
+#include "support/effort.h"
 #include "unit/builders/box_count.h"
 #include "unit/builders/reference_shapes.h"
 
@@ -29,7 +30,7 @@ class BuilderDeterminism : public ::testing::TestWithParam<std::size_t> {
     ASSERT_TRUE(expected) << expected.error().message;
     const Status valid = tree::validate(*expected, {.primitive_boxes = boxes});
     ASSERT_TRUE(valid) << valid.error().message;
-    for (const int threads : {2, 8}) {
+    for (const int threads : test::thread_counts()) {
       ThreadExecutor executor(threads);
       const auto tree = builders::build(testing::reference_set(boxes), {id, settings}, {executor});
       ASSERT_TRUE(tree) << tree.error().message;

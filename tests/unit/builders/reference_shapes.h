@@ -1,6 +1,7 @@
 // Sets of references for the builders' tests: plain ones and those that heuristics stumble over.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "boxwood/refs.h"
+#include "support/effort.h"
 
 namespace boxwood::testing {
 
@@ -134,6 +136,8 @@ inline std::vector<Shape> awkward_shapes() {
                     })});
   shapes.push_back({"soup", soup(3000, 4)});
   shapes.push_back({"height_field", height_field(50)});
+  if (test::kInstrumented)
+    for (Shape& shape : shapes) shape.boxes.resize(std::min<std::size_t>(shape.boxes.size(), 300));
   return shapes;
 }
 

@@ -7,6 +7,7 @@
 #include "boxwood/render.h"
 #include "render/color.h"
 #include "render/color_scale.h"
+#include "support/effort.h"
 #include "test_meshes.h"
 
 namespace boxwood::render {
@@ -284,7 +285,7 @@ TEST(Render, SameBitsOnEveryExecutor) {
   for (const Shade shade : kAllShades) {
     const Image reference = picture(build(mesh, std::make_shared<SequentialExecutor>()), view, width, height, shade);
     EXPECT_GT(colors(reference).size(), 20u);
-    for (const int threads : {1, 2, 8})
+    for (const int threads : test::thread_counts())
       EXPECT_EQ(picture(build(mesh, std::make_shared<ThreadExecutor>(threads)), view, width, height, shade).rgb,
                 reference.rgb)
           << "shade " << static_cast<int>(shade) << ", " << threads << " threads";
