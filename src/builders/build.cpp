@@ -9,7 +9,7 @@
 namespace boxwood::builders {
 namespace {
 
-constexpr std::size_t kChunk = 1 << 16;
+constexpr std::size_t kChunk = 1 << 14;
 
 /// A box that holds something and can be calculated with.
 bool is_usable(const refs::Reference& reference, std::size_t primitive_count) {

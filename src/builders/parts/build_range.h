@@ -21,7 +21,9 @@ struct BuildRange {
 
 /// Ranges of more references than this are worked on in parallel chunks, smaller ones by one thread. Fixed, so that
 /// what is calculated does not depend on the number of threads.
-inline constexpr std::size_t kLargeRange = 1 << 16;
-inline constexpr std::size_t kChunk = 1 << 14;
+inline constexpr std::size_t kLargeRange = 1 << 14;
+inline constexpr std::size_t kChunk = 1 << 12;
+/// Smaller ranges are not worth a task of their own.
+inline constexpr std::size_t kTaskRange = 1 << 12;
 
 }  // namespace boxwood::builders

@@ -13,6 +13,9 @@ namespace {
 
 using refs::Reference;
 
+/// References that pair among themselves. Smaller ones would leave more of them alone.
+constexpr std::size_t kPairingChunk = std::size_t{1} << 14;
+
 class Pairing {
  public:
   Pairing(const refs::ReferenceSet& set, mesh::Weld weld, double growth, Executor& executor)
@@ -139,8 +142,8 @@ class Pairing {
 EdgePairs pair_references(const refs::ReferenceSet& set, mesh::Weld weld, double growth, Executor& executor) {
   const std::size_t count = set.references.size();
   Pairing pairing(set, weld, growth, executor);
-  std::vector<std::size_t> first((count + kChunk - 1) / kChunk + 1);
-  executor.for_chunks(count, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+  std::vector<std::size_t> first((count + kPairingChunk - 1) / kPairingChunk + 1);
+  executor.for_chunks(count, kPairingChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     first[chunk + 1] = pairing.run(std::uint32_t(begin), std::uint32_t(end));
   });
   for (std::size_t chunk = 1; chunk < first.size(); ++chunk) first[chunk] += first[chunk - 1];
@@ -150,7 +153,7 @@ EdgePairs pair_references(const refs::ReferenceSet& set, mesh::Weld weld, double
   out.set.bounds = set.bounds;
   out.numbered = pairing.numbered();
   out.pairs = AlignedBuffer<ReferencePair>(first.back());
-  executor.for_chunks(count, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+  executor.for_chunks(count, kPairingChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     pairing.write(std::uint32_t(begin), std::uint32_t(end), std::uint32_t(first[chunk]), out);
   });
   return out;

@@ -12,12 +12,12 @@
 //   void finish(const BuildRange&, tree::Node* nodes, std::uint32_t* ids)
 //                                                  does so; without `finishes` said, it makes a leaf
 //
-// Large ranges are split in rounds, breadth first, each by a parallel find and apply (or, once there are many, side by
-// side); then each small range is finished by one thread. A stack that takes the larger half and goes on with the
-// smaller one never holds more than log2(n) ranges, so nothing here recurses. The node of the split of [first, last)
-// at `mid` puts its children into the slots 2 * mid and 2 * mid + 1: each mid in 1 .. n - 1 is used once at most, so
-// threads need no counter and the slots do not depend on their order. Past kDepthLimit ranges are halved, which bounds
-// the depth of the tree by kDepthLimit + log2(n).
+// Ranges worth a task are split in rounds, breadth first: few large ones one after the other, each by a parallel find
+// and apply, all others side by side; then each small range is finished by one thread. A stack that takes the larger
+// half and goes on with the smaller one never holds more than log2(n) ranges, so nothing here recurses. The node of the
+// split of [first, last) at `mid` puts its children into the slots 2 * mid and 2 * mid + 1: each mid in 1 .. n - 1 is
+// used once at most, so threads need no counter and the slots do not depend on their order. Past kDepthLimit ranges are
+// halved, which bounds the depth of the tree by kDepthLimit + log2(n).
 #pragma once
 
 #include <array>
@@ -57,7 +57,7 @@ class TopDownDriver {
   /// Fills nodes() and ids(). False when cancelled.
   bool run(const BuildRange& root) {
     std::vector<BuildRange> large, small;
-    (root.size() > large_range_ ? large : small).push_back(root);
+    (root.size() > kTaskRange ? large : small).push_back(root);
     while (!large.empty() && !monitor_.cancelled()) large = split_round(large, small);
     executor_.for_chunks(small.size(), 1, [&](std::size_t chunk, std::size_t, std::size_t) {
       finish(small[chunk]);
@@ -70,7 +70,7 @@ class TopDownDriver {
   AlignedBuffer<std::uint32_t>& ids() { return ids_; }
 
  private:
-  /// Below this many ranges at once the threads share the work on each range, from here on the ranges.
+  /// Below this many ranges at once the threads share the work on each large range, from here on the ranges.
   static constexpr std::size_t kManyRanges = 8;
 
   struct Children {
@@ -80,15 +80,17 @@ class TopDownDriver {
 
   std::vector<BuildRange> split_round(const std::vector<BuildRange>& ranges, std::vector<BuildRange>& small) {
     std::vector<Children> children(ranges.size());
-    if (ranges.size() < kManyRanges) {
-      for (std::size_t i = 0; i < ranges.size(); ++i)
+    const auto by_all_threads = [&](const BuildRange& range) {
+      return ranges.size() < kManyRanges && range.size() > large_range_;
+    };
+    for (std::size_t i = 0; i < ranges.size(); ++i)
+      if (by_all_threads(ranges[i]))
         children[i].split = split_or_leaf(ranges[i], executor_, children[i].left, children[i].right);
-    } else {
-      executor_.for_chunks(ranges.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
-        SequentialExecutor sequential;
+    executor_.for_chunks(ranges.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
+      SequentialExecutor sequential;
+      if (!by_all_threads(ranges[i]))
         children[i].split = split_or_leaf(ranges[i], sequential, children[i].left, children[i].right);
-      });
-    }
+    });
     std::vector<BuildRange> large;
     for (std::size_t i = 0; i < ranges.size(); ++i) {
       if (!children[i].split) {
@@ -96,7 +98,7 @@ class TopDownDriver {
         continue;
       }
       for (const BuildRange& child : {children[i].left, children[i].right})
-        (child.size() > large_range_ ? large : small).push_back(child);
+        (child.size() > kTaskRange ? large : small).push_back(child);
     }
     return large;
   }

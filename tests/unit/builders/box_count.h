@@ -10,11 +10,11 @@
 namespace boxwood::testing {
 
 /// `wanted` boxes, but for builders that say they are slower than n log n only `few`. These work in parallel on ranges
-/// of more than 4096 references already (kLargeSearch), the quick ones on more than 65536 (kLargeRange). Under a
+/// of more than 4096 references already (kLargeSearch), the quick ones on more than 16384 (kLargeRange). Under a
 /// sanitizer there are hardly more than that.
 inline std::size_t box_count(const builders::BuilderInfo& info, std::size_t wanted, std::size_t few) {
   if (test::kInstrumented) {
-    wanted = std::min<std::size_t>(wanted, 70000);
+    wanted = std::min<std::size_t>(wanted, 20000);
     few = std::min<std::size_t>(few, 4500);
   }
   const std::string_view cost_class = info.cost_class;

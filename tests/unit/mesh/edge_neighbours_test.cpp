@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <random>
 
 #include "unit/mesh/hand_made.h"
 
@@ -87,6 +88,19 @@ TEST(EdgeNeighbours, DegenerateAndUnusableTrianglesHaveNone) {
   const float nan = std::nanf("");
   expect_all_neighbours(test::make_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {nan, 0, 0}, {1, 1, 0}, {1, 0, 0}},
                                         {{0, 1, 2}, {1, 0, 3}, {0, 0, 0}, {1, 1, 1}, {1, 4, 2}, {0, 1, 0}, {1, 5, 4}}));
+}
+
+TEST(EdgeNeighbours, SeveralPartsFindWhatOneFinds) {
+  TriangleMesh mesh = test::wave(150, 160);                                     // three chunks of triangles
+  std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), std::mt19937(4));  // partners in other parts
+  const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 8);
+  const auto neighbours = [&](int threads) {
+    ThreadExecutor executor(threads);
+    const auto found = mesh::edge_neighbours(mesh, Weld::index, executor);
+    return std::vector<EdgeNeighbours>(found.begin(), found.end());
+  };
+  const std::vector<EdgeNeighbours> all = all_neighbours(mesh, false);
+  for (const int threads : {1, 2, 3, 8}) EXPECT_EQ(neighbours(threads), all) << threads << " threads";
 }
 
 TEST(EdgeNeighbours, NothingAndOneTriangle) {
