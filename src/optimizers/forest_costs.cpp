@@ -26,7 +26,11 @@ namespace {
 
 constexpr std::uint32_t kPairsPerTask = 16384;
 
-using Costs = std::array<double, kLargestWidth + 1>;  // [i]: cost of a forest of i trees
+/// What a subtree costs as a forest of so many trees: it never rises with their number.
+struct Costs {
+  std::array<double, kLargestWidth + 1> of;  ///< [i]: of a forest of i trees, up to `last`; from there on it stays
+  int last;
+};
 
 double area(const Box& box) {
   if (box.is_empty()) return 0;
@@ -43,30 +47,28 @@ struct Run {
 /// A subtree whose parent has not been reached yet.
 struct Waiting {
   std::uint32_t pair, first, count;
+  Costs opened;  ///< D(n, 2) and up
+};
+
+struct Subtree {
+  std::uint32_t first, count;
+  Costs costs;  ///< C(n, 1) and up
 };
 
 class Stack {
  public:
-  explicit Stack(int width) : width_(std::size_t(width)) {}
-  void push(const Waiting& subtree, const Costs& opened) {
-    subtrees_.push_back(subtree);
-    opened_.insert(opened_.end(), opened.begin() + 2, opened.begin() + std::ptrdiff_t(width_) + 1);
+  /// Room for one more, to be filled in.
+  Waiting& push() {
+    if (size_ == entries_.size()) entries_.resize(2 * size_ + 16);
+    return entries_[size_++];
   }
-  /// False when there is none.
-  bool pop(Waiting& subtree, Costs& opened) {
-    if (subtrees_.empty()) return false;
-    subtree = subtrees_.back();
-    subtrees_.pop_back();
-    std::copy(opened_.end() - std::ptrdiff_t(width_ - 1), opened_.end(), opened.begin() + 2);
-    opened_.resize(opened_.size() - (width_ - 1));
-    return true;
-  }
-  std::size_t size() const { return subtrees_.size(); }
+  /// The last one, good until the next push; null when there is none.
+  Waiting* pop() { return size_ == 0 ? nullptr : &entries_[--size_]; }
+  std::size_t size() const { return size_; }
 
  private:
-  std::size_t width_;
-  std::vector<Waiting> subtrees_;
-  std::vector<double> opened_;  // D(n, 2) to D(n, width) of each
+  std::vector<Waiting> entries_;
+  std::size_t size_ = 0;
 };
 
 class Programme {
@@ -112,52 +114,52 @@ class Programme {
 
   /// Works through the pairs of a run from back to front. False: not canonical.
   bool evaluate(Run run, Stack& stack) const {
+    Subtree left, right;
     for (std::uint32_t pair = run.end; pair-- > run.begin;) {
-      Costs left{}, right{}, opened{};
-      Waiting left_part, right_part;
-      if (!close(2 * pair + 1, stack, left_part, left) || !close(2 * pair + 2, stack, right_part, right)) return false;
-      if (right_part.first - left_part.first != left_part.count) return false;
-      Choice choice;
-      for (int trees = 2; trees <= width_; ++trees) {
-        int best = 1;
-        double cost = left[1] + right[std::size_t(trees) - 1];
-        for (int k = 2; k < trees; ++k) {
-          const double candidate = left[std::size_t(k)] + right[std::size_t(trees - k)];
-          if (candidate < cost) cost = candidate, best = k;
-        }
-        opened[std::size_t(trees)] = cost;
-        if (trees > 2) choice.set_left_trees(trees, best);
-      }
-      out_.choices[pair] = choice;
-      out_.counts[pair] = left_part.count + right_part.count;
-      stack.push({pair, left_part.first, left_part.count + right_part.count}, opened);
+      if (!close(2 * pair + 1, stack, left) || !close(2 * pair + 2, stack, right)) return false;
+      if (right.first - left.first != left.count) return false;
+      out_.counts[pair] = left.count + right.count;
+      Waiting& whole = stack.push();
+      whole.pair = pair;
+      whole.first = left.first;
+      whole.count = left.count + right.count;
+      out_.choices[pair] = share(left.costs, right.costs, whole.opened);
     }
     return true;
   }
 
   /// C(n, 1) to C(n, width) of a node whose subtree is done: on top of the stack, or a leaf.
-  bool close(std::uint32_t n, Stack& stack, Waiting& part, Costs& costs) const {
+  bool close(std::uint32_t n, Stack& stack, Subtree& subtree) const {
     const tree::Node& node = tree_.nodes[n];
     const double node_area = weight(n) + least_area_;
     if (node.is_leaf()) {
-      part = {0, node.first, node.count};
       if (node.first > tree_.references.size() || node.count > tree_.references.size() - node.first) return false;
-      price_leaf(node_area, node.first, node.count, costs);
+      subtree.first = node.first;
+      subtree.count = node.count;
+      price_leaf(node_area, node.first, node.count, subtree.costs);
       return true;
     }
-    if (!stack.pop(part, costs) || node.first != 2 * part.pair + 1) return false;
-    Choice& choice = out_.choices[part.pair];
-    double whole = node_area * node_cost_ + costs[std::size_t(width_)];
-    if (part.count <= largest_leaf_) {
+    const Waiting* const waiting = stack.pop();
+    if (waiting == nullptr || node.first != 2 * waiting->pair + 1) return false;
+    subtree.first = waiting->first;
+    subtree.count = waiting->count;
+    Choice& choice = out_.choices[waiting->pair];
+    const Costs& opened = waiting->opened;
+    double whole = node_area * node_cost_ + opened.of[std::size_t(opened.last)];
+    if (subtree.count <= largest_leaf_) {
       // The fewest blocks first: most subtrees that are no leaf are none at any number.
-      double leaf = node_area * double(divide_up(part.count, block_));
-      if (leaf <= whole && leaf_blocks_) leaf = node_area * double(blocks_of(part.first, part.count));
+      double leaf = node_area * double(divide_up(subtree.count, block_));
+      if (leaf <= whole && leaf_blocks_) leaf = node_area * double(blocks_of(subtree.first, subtree.count));
       if (leaf <= whole) whole = leaf, choice.set_leaf();
     }
-    costs[1] = whole;
-    int from = 2;
-    while (from <= width_ && !(costs[std::size_t(from)] < whole)) costs[std::size_t(from++)] = whole;
-    if (from <= width_) choice.set_opened_from(from);
+    Costs& costs = subtree.costs;
+    costs.last = 1;
+    for (int trees = 1; trees <= opened.last; ++trees) {
+      const bool opens = trees > 1 && opened.of[std::size_t(trees)] < whole;
+      if (opens && costs.last == 1) choice.set_opened_from(trees);
+      if (opens) costs.last = opened.last;
+      costs.of[std::size_t(trees)] = opens ? opened.of[std::size_t(trees)] : whole;
+    }
     return true;
   }
 
@@ -179,10 +181,35 @@ class Programme {
   void price_leaf(double node_area, std::uint32_t first, std::uint32_t count, Costs& costs) const {
     const double blocks = double(blocks_of(first, count));
     const std::uint64_t chunks = divide_up(count, largest_leaf_);
+    costs.of[1] = node_area * blocks;
+    costs.last = 1;
+    if (chunks <= 1) return;
     for (int trees = 1; trees <= width_; ++trees) {
       const double nodes = double(chunk_nodes(chunks, std::uint64_t(trees), std::uint64_t(width_)));
-      costs[std::size_t(trees)] = node_area * (blocks + node_cost_ * nodes);
+      costs.of[std::size_t(trees)] = node_area * (blocks + node_cost_ * nodes);
+      if (costs.of[std::size_t(trees)] < costs.of[std::size_t(costs.last)]) costs.last = trees;
     }
+  }
+
+  /// D(n, 2) and up of a node with these children, and how many trees each of them gives. No more trees than both of
+  /// them have a use for are looked at: most subtrees are small. Ties: the fewest on the left.
+  Choice share(const Costs& left, const Costs& right, Costs& opened) const {
+    const int all = left.last + right.last;
+    Choice choice;
+    opened.last = std::min(all, width_);
+    for (int trees = 2; trees <= opened.last; ++trees) {
+      int best = std::max(1, trees - right.last);
+      while (best > 1 && left.of[std::size_t(best) - 1] == left.of[std::size_t(best)]) --best;
+      double cost = left.of[std::size_t(best)] + right.of[std::size_t(std::min(trees - best, right.last))];
+      for (int k = std::max(best + 1, trees - right.last); k <= std::min(trees - 1, left.last); ++k) {
+        const double candidate = left.of[std::size_t(k)] + right.of[std::size_t(trees - k)];
+        if (candidate < cost) cost = candidate, best = k;
+      }
+      opened.of[std::size_t(trees)] = cost;
+      if (trees > 2) choice.set_left_trees(trees, best);
+    }
+    for (int trees = std::max(3, all + 1); trees <= width_; ++trees) choice.set_left_trees(trees, left.last);
+    return choice;
   }
 
   const tree::BinaryTree& tree_;
@@ -215,28 +242,26 @@ Result<ForestCosts> price_forests(const tree::BinaryTree& tree, const CollapseOp
   std::vector<std::uint32_t> tasks;  // runs of more than one pair: whole subtrees
   for (std::size_t r = 0; r < runs.size(); ++r)
     if (runs[r].end - runs[r].begin > 1) tasks.push_back(std::uint32_t(r));
-  std::vector<Stack> stacks(tasks.size(), Stack(options.width));
+  std::vector<Stack> stacks(tasks.size());
   std::vector<std::uint8_t> good(tasks.size());
   executor.for_chunks(tasks.size(), 1, [&](std::size_t task, std::size_t, std::size_t) {
     good[task] = programme.evaluate(runs[tasks[task]], stacks[task]) && stacks[task].size() == 1;
   });
 
-  Stack stack(options.width);
-  Waiting part;
-  Costs costs{};
+  Stack stack;
+  Subtree whole;
   std::size_t task = tasks.size();
   for (std::size_t r = runs.size(); r-- > 0;) {
     if (task > 0 && tasks[task - 1] == r) {
       if (!good[--task]) return malformed;
-      stacks[task].pop(part, costs);
-      stack.push(part, costs);
+      stack.push() = *stacks[task].pop();
     } else if (!programme.evaluate(runs[r], stack)) {
       return malformed;
     }
   }
-  if (!programme.close(0, stack, part, costs) || stack.size() != 0) return malformed;
-  if (part.first != 0 || part.count != tree.references.size()) return malformed;
-  out.root_cost = costs[1];
+  if (!programme.close(0, stack, whole) || stack.size() != 0) return malformed;
+  if (whole.first != 0 || whole.count != tree.references.size()) return malformed;
+  out.root_cost = whole.costs.of[1];
   return out;
 }
 
