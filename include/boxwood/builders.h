@@ -35,6 +35,8 @@ class OptionValues {
   std::uint32_t integer(std::string_view key) const;  ///< of an integer option
   std::size_t choice(std::string_view key) const;     ///< index into the option's choices
   tree::CostModel cost() const;                       ///< cost.traversal and cost.intersection
+  bool has(std::string_view key) const;               ///< does the builder have this option?
+  void set(std::string_view key, double value);       ///< of a number; the key must exist, the range is not checked
   /// Key and value as text, in the registry's order: what reports echo.
   std::vector<std::pair<std::string, std::string>> echo() const;
 

@@ -6,12 +6,20 @@
 namespace boxwood {
 namespace {
 
+using Setting = std::pair<const char*, const char*>;
+
+/// A wide layout tests four triangles at once, so a subtree of a few is hardly ever worth its nodes: with these prices
+/// the builder stops there, where the collapse would make a leaf anyway, and pairs need not be told apart before
+/// (docs/best-tree.md).
+constexpr Setting kFastSettings[] = {{"cost.intersection", "0.35"}, {"merge.most", "2"}};
+constexpr Setting kBalancedSettings[] = {{"cost.intersection", "0.5"}, {"merge.most", "2"}};
+
 constexpr QualityLevel kLevels[] = {
     {.id = "fast",
      .summary = "for trees that are rebuilt often",
      .presplit = "none",
      .builder = "hlbvh",
-     .settings = {},
+     .settings = kFastSettings,
      .optimizer = "none",
      .build_cost = "0.8 to 0.9",
      .memory = "up to 1.1 times balanced"},
@@ -19,7 +27,7 @@ constexpr QualityLevel kLevels[] = {
      .summary = "the default: quick to build, good to trace",
      .presplit = "none",
      .builder = "binned-sah",
-     .settings = {},
+     .settings = kBalancedSettings,
      .optimizer = "none",
      .build_cost = "1",
      .memory = "55 to 66 bytes per triangle"},

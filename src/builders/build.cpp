@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "builders/parts/merged_runs.h"
 #include "builders/parts/option_specs.h"
 
 namespace boxwood::builders {
@@ -64,6 +65,26 @@ bool has_repeats(const refs::ReferenceSet& set) {
   return false;
 }
 
+/// How many references may be taken as one: no more than a leaf may have.
+std::uint32_t merge_most(const OptionValues& options) {
+  if (!options.has(kMergeMost)) return 1;
+  const std::uint32_t most = options.integer(kMergeMost), leaf_max = options.integer(kLeafMax);
+  return leaf_max == 0 ? most : std::min(most, leaf_max);
+}
+
+/// Builds over runs of references, each at the price and size of the references in it.
+Result<tree::BinaryTree> build_over_runs(const BuilderInfo& info, refs::ReferenceSet&& references, OptionValues options,
+                                         std::uint32_t most, const BuildContext& context) {
+  MergedRuns runs(std::move(references), most, options.number(kMergeGrowth), context.executor);
+  options.set("cost.intersection", options.number("cost.intersection") * runs.references_per_run());
+  options.set(kLeafMax, options.integer(kLeafMax) / most);
+  auto tree = info.build(runs.take_set(), options, context);
+  if (!tree) return tree;
+  runs.expand(*tree, context.executor);
+  tree->notes.emplace_back("references after merging", double(runs.size()));
+  return tree;
+}
+
 #ifndef NDEBUG
 std::vector<Box> boxes_by_primitive(const refs::ReferenceSet& set) {
   std::vector<Box> boxes(set.primitive_count);
@@ -91,7 +112,9 @@ Result<tree::BinaryTree> build_checked(refs::ReferenceSet&& references, const Bu
   const std::vector<Box> boxes = boxes_by_primitive(references);
 #endif
   if (!references.primitives) references.primitives = refs::box_primitives();
-  Result<tree::BinaryTree> tree = info.build(std::move(references), *values, context);
+  const std::uint32_t most = merge_most(*values);
+  Result<tree::BinaryTree> tree = most > 1 ? build_over_runs(info, std::move(references), *values, most, context)
+                                           : info.build(std::move(references), *values, context);
   if (tree) {
     tree->splits_references |= repeats;
     if (tree->splits_references) tree::remove_duplicates(*tree);

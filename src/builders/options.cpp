@@ -1,4 +1,5 @@
 // Options of builders: text in, checked values out.
+#include <algorithm>
 #include <cassert>
 #include <charconv>
 #include <cmath>
@@ -98,6 +99,15 @@ std::uint32_t OptionValues::integer(std::string_view key) const {
 std::size_t OptionValues::choice(std::string_view key) const {
   assert(!entry(key).spec->choices.empty());
   return static_cast<std::size_t>(entry(key).value);
+}
+
+bool OptionValues::has(std::string_view key) const {
+  return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& entry) { return key == entry.spec->key; });
+}
+
+void OptionValues::set(std::string_view key, double value) {
+  for (Entry& entry : entries_)
+    if (key == entry.spec->key) entry.value = value;
 }
 
 tree::CostModel OptionValues::cost() const {

@@ -45,8 +45,9 @@ class Levels(CommandLineTest):
             self.assertLessEqual(better["notes"]["reinsertion: passes"], 2)
 
     def test_bench_takes_levels_and_optimizers(self):
-        report = self.report("bench", SCENE, "-b", "fast,best,lbvh", "--optimizer", "none", "--optimizer",
-                             "reinsertion", "--size", "16x16", "--repeat", 1, "--rays", "primary", "--threads", 1)
+        report = self.report("bench", "scene:city,triangles=5000", "-b", "fast,best,lbvh", "--optimizer", "none",
+                             "--optimizer", "reinsertion", "--size", "16x16", "--repeat", 1, "--rays", "primary",
+                             "--threads", 1)
         self.assertEqual(report["options"]["builders"]["best"]["builder"], "sbvh")
         rows = {(row["builder"], row["optimizer"].split(":")[0]): row for row in report["rows"]}
         self.assertEqual(len(rows), 6)

@@ -7,6 +7,7 @@
 #include "builders/parts/build_monitor.h"
 #include "builders/parts/emit_morton.h"
 #include "builders/parts/emit_treelets.h"
+#include "builders/parts/merged_runs.h"
 #include "builders/parts/morton_options.h"
 #include "builders/parts/morton_order.h"
 
@@ -32,7 +33,9 @@ constexpr OptionSpec kOptions[] = {
     {.key = "axes",
      .description = "axes binned for dividing treelets: all, or the one along which centroids spread most (PBRT)",
      .choices = kAxes},
-    kMortonLeafMaxOption};
+    kMortonLeafMaxOption,
+    kMergeMostOption,
+    kMergeGrowthOption};
 
 /// Ranges of equal first bits.
 std::vector<MortonRange> treelet_ranges(std::span<const KeyedIndex> order, int shift) {

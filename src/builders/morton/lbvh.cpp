@@ -5,13 +5,14 @@
 #include "builders/builder_list.h"
 #include "builders/parts/build_monitor.h"
 #include "builders/parts/emit_morton.h"
+#include "builders/parts/merged_runs.h"
 #include "builders/parts/morton_options.h"
 #include "builders/parts/morton_order.h"
 
 namespace boxwood::builders {
 namespace {
 
-constexpr OptionSpec kOptions[] = {kMortonBitsOption, kMortonLeafMaxOption};
+constexpr OptionSpec kOptions[] = {kMortonBitsOption, kMortonLeafMaxOption, kMergeMostOption, kMergeGrowthOption};
 
 Result<tree::BinaryTree> build_lbvh(refs::ReferenceSet&& set, const OptionValues& options,
                                     const BuildContext& context) {

@@ -6,6 +6,7 @@
 namespace boxwood::builders {
 
 RangeSplit BinnedSahFinder::find(const BuildRange& range, Executor& executor) const {
+  if (leaf_rule_.is_always_leaf(range.size())) return RangeSplit();
   const double area = scaled_half_area(range.bounds.box(), area_scale_);
   const int axis = all_axes_ ? -1 : range.centroids2.box().widest_axis();
   const BinGrid grid = BinGrid::over(range.centroids2, bins_for(range.size()), axis);

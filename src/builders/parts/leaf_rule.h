@@ -17,6 +17,9 @@ class LeafRule {
 
   bool may_be_leaf(std::uint32_t count) const { return leaf_max_ == 0 || count <= leaf_max_; }
 
+  /// A leaf however good the best split is: even children that cost nothing would not pay for their parent.
+  bool is_always_leaf(std::uint32_t count) const { return may_be_leaf(count) && intersection_ * count <= traversal_; }
+
   /// `children_cost` is area * count of both children of the best split, added.
   bool prefers_leaf(std::uint32_t count, double area, double children_cost) const {
     return may_be_leaf(count) && intersection_ * (count * area) <= traversal_ * area + intersection_ * children_cost;

@@ -5,6 +5,7 @@
 // say. O(n log n), at most 96 levels before medians take over; parallel; the same bits for every number of threads.
 #include "builders/builder_list.h"
 #include "builders/parts/binned_finder.h"
+#include "builders/parts/merged_runs.h"
 #include "builders/parts/option_specs.h"
 
 namespace boxwood::builders {
@@ -31,7 +32,9 @@ constexpr OptionSpec kOptions[] = {
     {.key = "axes",
      .description = "which axes to look for splits on: all, or the one on which centroids spread widest (pbrt)",
      .choices = kAxes},
-    leaf_max_option(16, "most references in a leaf; 0: no limit but the cost")};
+    leaf_max_option(16, "most references in a leaf; 0: no limit but the cost"),
+    kMergeMostOption,
+    kMergeGrowthOption};
 
 }  // namespace
 

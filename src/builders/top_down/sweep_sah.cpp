@@ -5,6 +5,7 @@
 // differs in the depth limit, past which the order of the widest axis is halved. Large ranges are swept and partitioned
 // in fixed chunks: boxes are joined exactly, so the same bits come out for every number of threads.
 #include "builders/builder_list.h"
+#include "builders/parts/merged_runs.h"
 #include "builders/parts/option_specs.h"
 #include "builders/parts/sweep.h"
 #include "builders/parts/top_down.h"
@@ -12,7 +13,8 @@
 namespace boxwood::builders {
 namespace {
 
-constexpr OptionSpec kOptions[] = {leaf_max_option(16, "most references in a leaf; 0: no limit but the cost")};
+constexpr OptionSpec kOptions[] = {leaf_max_option(16, "most references in a leaf; 0: no limit but the cost"),
+                                   kMergeMostOption, kMergeGrowthOption};
 
 Result<tree::BinaryTree> build_sweep_sah(refs::ReferenceSet&& set, const OptionValues& options,
                                          const BuildContext& context) {

@@ -58,6 +58,12 @@ TEST_P(BuilderDeterminism, Surface) {
   check(testing::height_field(count(320, 75)));
 }
 
+TEST_P(BuilderDeterminism, RunsTakenAsOne) {
+  const builders::BuilderInfo& info = builders::registry()[GetParam()];
+  if (builders::resolve_options(info.id, {})->has("merge.most"))
+    check(testing::height_field(count(240, 75)), {{"merge.most", "3"}, {"merge.growth", "1"}});
+}
+
 TEST_P(BuilderDeterminism, EqualBoxes) {
   check(testing::Boxes(count(100000, 6000), Box{{1, 2, 3}, {2, 3, 4}}));
 }

@@ -1,0 +1,115 @@
+// Meshes name neighbouring triangles one after the other more often than not: exporters write both halves of a quad
+// together, scanners and subdivision go along rows. So looking at the next reference finds most of the pairs that a
+// search over shared edges would find (Houghton and Spoerer, bib key ebbvh, first round), for nothing.
+//
+// Runs are taken greedily within chunks of fixed size. The tree over them is in canonical form, where leaves name
+// ranges of references in order: a sum over the runs' lengths says where each range is once they are replaced.
+#include "builders/parts/merged_runs.h"
+
+#include <vector>
+
+namespace boxwood::builders {
+namespace {
+
+using refs::Reference;
+
+constexpr std::size_t kChunk = std::size_t{1} << 14;
+
+std::size_t chunk_count(std::size_t count) {
+  return (count + kChunk - 1) / kChunk;
+}
+
+/// Calls f(first, last, box) for each run of the references [begin, end).
+template <class F>
+void for_runs(std::span<const Reference> references, std::size_t begin, std::size_t end, std::uint32_t most,
+              float growth, F f) {
+  for (std::size_t first = begin; first < end;) {
+    Box box = references[first].box();
+    float parts = box.half_area();
+    std::size_t last = first + 1;
+    for (; last < end && last - first < most; ++last) {
+      if (references[last].primitive == references[last - 1].primitive) break;
+      const Box next = references[last].box(), joined = merge(box, next);
+      const float with_next = parts + next.half_area();
+      if (!(joined.half_area() <= growth * with_next)) break;
+      box = joined;
+      parts = with_next;
+    }
+    f(first, last, box);
+    first = last;
+  }
+}
+
+/// counts[c + 1] of each chunk c become the sums before them.
+std::size_t add_up(std::vector<std::size_t>& counts) {
+  for (std::size_t c = 1; c < counts.size(); ++c) counts[c] += counts[c - 1];
+  return counts.back();
+}
+
+}  // namespace
+
+MergedRuns::MergedRuns(refs::ReferenceSet&& set, std::uint32_t most, double growth, Executor& executor)
+    : primitive_count_(set.primitive_count) {
+  const refs::ReferenceSet whole = std::move(set);
+  const std::span<const Reference> references = whole.references.span();
+  const std::size_t count = references.size();
+  std::vector<std::size_t> runs_before(chunk_count(count) + 1);
+  std::vector<std::uint8_t> numbered(chunk_count(count));
+  executor.for_chunks(count, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    for_runs(references, begin, end, most, float(growth),
+             [&](std::size_t, std::size_t, const Box&) { ++runs_before[chunk + 1]; });
+    bool same = true;
+    for (std::size_t i = begin; i < end; ++i) same &= references[i].primitive == i;
+    numbered[chunk] = same;
+  });
+  const std::size_t runs = add_up(runs_before);
+  first_ = AlignedBuffer<std::uint32_t>(runs + 1);
+  first_[runs] = std::uint32_t(count);
+  runs_.references = AlignedBuffer<Reference>(runs);
+  runs_.primitive_count = runs;
+  runs_.bounds = whole.bounds;
+  runs_.primitives = refs::box_primitives();
+  executor.for_chunks(count, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    std::size_t run = runs_before[chunk];
+    for_runs(references, begin, end, most, float(growth), [&](std::size_t first, std::size_t, const Box& box) {
+      runs_.references[run] = {box.lower, std::uint32_t(run), box.upper, 0};
+      first_[run++] = std::uint32_t(first);
+    });
+  });
+  bool all_numbered = true;
+  for (const std::uint8_t same : numbered) all_numbered &= same != 0;
+  if (all_numbered) return;
+  primitives_ = AlignedBuffer<std::uint32_t>(count);
+  for (std::size_t i = 0; i < count; ++i) primitives_[i] = references[i].primitive;
+}
+
+void MergedRuns::expand(tree::BinaryTree& tree, Executor& executor) const {
+  const std::span<const std::uint32_t> runs = tree.references.span();
+  std::vector<std::size_t> before(chunk_count(runs.size()) + 1);
+  executor.for_chunks(runs.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) before[chunk + 1] += length(runs[i]);
+  });
+  AlignedBuffer<std::uint32_t> references(add_up(before)), start(runs.size() + 1);
+  start[runs.size()] = std::uint32_t(references.size());
+  executor.for_chunks(runs.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    std::size_t next = before[chunk];
+    for (std::size_t i = begin; i < end; ++i) {
+      start[i] = std::uint32_t(next);
+      for (std::uint32_t r = first_[runs[i]]; r < first_[runs[i] + 1]; ++r)
+        references[next++] = primitives_.empty() ? r : primitives_[r];
+    }
+  });
+  executor.for_chunks(tree.nodes.size(), kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      tree::Node& node = tree.nodes[n];
+      if (!node.is_leaf()) continue;
+      const std::uint32_t last = node.first + node.count;
+      node.first = start[node.first];
+      node.count = start[last] - node.first;
+    }
+  });
+  tree.references = std::move(references);
+  tree.primitive_count = primitive_count_;
+}
+
+}  // namespace boxwood::builders
