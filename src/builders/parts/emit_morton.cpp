@@ -16,7 +16,7 @@ namespace boxwood::builders {
 namespace {
 
 constexpr std::uint32_t kTaskSize = 4096;
-constexpr std::size_t kRangesPerChunk = 4;
+constexpr std::size_t kRangesPerChunk = 16;
 
 }  // namespace
 
@@ -24,6 +24,13 @@ constexpr std::size_t kRangesPerChunk = 4;
 struct MortonEmitter::Split {
   MortonRange range;
   std::uint32_t middle;
+};
+
+/// What one small range after the other is worked on with.
+struct MortonEmitter::Scratch {
+  std::vector<Split> splits;
+  std::vector<MortonRange> open;
+  std::vector<EmittedSubtree> made;
 };
 
 std::uint32_t MortonEmitter::middle(MortonRange range) const {
@@ -43,31 +50,29 @@ EmittedSubtree MortonEmitter::leaf(std::uint32_t position) const {
   return {{box, position, 1}, double(box.half_area()) * double(leaves_.cost.intersection)};
 }
 
-EmittedSubtree MortonEmitter::join(std::uint32_t middle, const EmittedSubtree& left,
-                                   const EmittedSubtree& right) const {
-  nodes_[2 * std::size_t(middle) - 1] = left.root;
-  nodes_[2 * std::size_t(middle)] = right.root;
-  const Box box = merge(left.root.bounds, right.root.bounds);
-  return {{box, 2 * middle - 1, 0}, double(box.half_area()) * double(leaves_.cost.traversal) + left.cost + right.cost};
-}
-
 EmittedSubtree MortonEmitter::finish(const Split& split, const EmittedSubtree& left,
                                      const EmittedSubtree& right) const {
-  const EmittedSubtree inner = join(split.middle, left, right);
+  const Box box = merge(left.root.bounds, right.root.bounds);
   const std::uint32_t count = split.range.size();
-  if (leaves_.largest != 0 && count > leaves_.largest) return inner;
-  const Box& box = inner.root.bounds;
-  const double cost = double(box.half_area()) * double(leaves_.cost.intersection) * double(count);
-  if (cost > inner.cost) return inner;
-  return {{box, split.range.first, count}, cost};
+  const double area = double(box.half_area());
+  const double inner_cost = area * double(leaves_.cost.traversal) + left.cost + right.cost;
+  if (leaves_.largest == 0 || count <= leaves_.largest) {
+    const double leaf_cost = area * double(leaves_.cost.intersection) * double(count);
+    if (leaf_cost <= inner_cost) return {{box, split.range.first, count}, leaf_cost};
+  }
+  // Children of what became a leaf never touch the nodes' memory.
+  nodes_[2 * std::size_t(split.middle) - 1] = left.root;
+  nodes_[2 * std::size_t(split.middle)] = right.root;
+  return {{box, 2 * split.middle - 1, 0}, inner_cost};
 }
 
-EmittedSubtree MortonEmitter::emit_small(MortonRange whole) const {
+EmittedSubtree MortonEmitter::emit_small(MortonRange whole, Scratch& scratch) const {
   if (whole.size() == 1) return leaf(whole.first);
   // All divisions in depth-first order; backwards, the two halves of a range are always the last two subtrees made.
-  std::vector<Split> splits;
-  splits.reserve(whole.size());
-  std::vector<MortonRange> open{whole};
+  auto& [splits, open, made] = scratch;
+  splits.clear();
+  open.assign(1, whole);
+  made.clear();
   while (!open.empty()) {
     const MortonRange range = open.back();
     open.pop_back();
@@ -76,7 +81,6 @@ EmittedSubtree MortonEmitter::emit_small(MortonRange whole) const {
     if (range.last - m > 1) open.push_back({m, range.last});
     if (m - range.first > 1) open.push_back({range.first, m});
   }
-  std::vector<EmittedSubtree> made;
   const auto take = [&](MortonRange range) {
     if (range.size() == 1) return leaf(range.first);
     const EmittedSubtree subtree = made.back();
@@ -111,9 +115,10 @@ std::vector<EmittedSubtree> MortonEmitter::emit(std::span<const MortonRange> ran
 
   std::vector<EmittedSubtree> task_roots(tasks.size());
   executor.for_chunks(tasks.size(), kRangesPerChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+    Scratch scratch;
     for (std::size_t t = begin; t < end; ++t) {
       if (cancel_ && cancel_->load(std::memory_order_relaxed)) return;
-      task_roots[t] = emit_small(tasks[t]);
+      task_roots[t] = emit_small(tasks[t], scratch);
     }
   });
 

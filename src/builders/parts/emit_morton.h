@@ -47,11 +47,11 @@ class MortonEmitter {
 
  private:
   struct Split;
+  struct Scratch;
   std::uint32_t middle(MortonRange range) const;
   EmittedSubtree leaf(std::uint32_t position) const;
-  EmittedSubtree join(std::uint32_t middle, const EmittedSubtree& left, const EmittedSubtree& right) const;
   EmittedSubtree finish(const Split& split, const EmittedSubtree& left, const EmittedSubtree& right) const;
-  EmittedSubtree emit_small(MortonRange range) const;
+  EmittedSubtree emit_small(MortonRange range, Scratch& scratch) const;
 
   std::span<const KeyedIndex> order_;
   std::span<const refs::Reference> references_;
