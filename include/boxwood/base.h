@@ -91,7 +91,30 @@ namespace memory {
 void* allocate(std::size_t bytes, std::size_t alignment);
 /// Gives back what `allocate` gave for the same two numbers; null is allowed.
 void release(void* block, std::size_t bytes, std::size_t alignment) noexcept;
+
+/// For standard containers whose memory shall come from `allocate`.
+template <class T>
+struct Allocator {
+  using value_type = T;
+
+  Allocator() = default;
+  template <class U>
+  Allocator(const Allocator<U>&) noexcept {}
+  T* allocate(std::size_t count) {
+    if (count > SIZE_MAX / sizeof(T)) throw std::bad_alloc();
+    return static_cast<T*>(memory::allocate(count * sizeof(T), kAlignment));
+  }
+  void deallocate(T* block, std::size_t count) noexcept { memory::release(block, count * sizeof(T), kAlignment); }
+  friend bool operator==(const Allocator&, const Allocator&) { return true; }
+
+ private:
+  static constexpr std::size_t kAlignment = alignof(T) > 64 ? alignof(T) : 64;
+};
 }  // namespace memory
+
+/// A std::vector that lies in huge pages when it is large.
+template <class T>
+using LargeVector = std::vector<T, memory::Allocator<T>>;
 
 /// A fixed-size array aligned to a cache line (64 bytes), uninitialised unless said otherwise. Moves, never copies.
 /// Throws std::bad_alloc, which every public entry point of the library turns into `ErrorCode::out_of_memory`.

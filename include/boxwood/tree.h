@@ -66,9 +66,9 @@ struct WideTree {
   };
   int width = 0;
   Box bounds;
-  std::vector<std::uint32_t> first_child;  ///< per node, plus one at the end: children[first_child[n]] to [n + 1]
-  std::vector<Child> children;
-  std::vector<std::uint32_t> references;  ///< primitive ids by leaf, no id twice in one leaf
+  LargeVector<std::uint32_t> first_child;  ///< per node, plus one at the end: children[first_child[n]] to [n + 1]
+  LargeVector<Child> children;
+  LargeVector<std::uint32_t> references;  ///< primitive ids by leaf, no id twice in one leaf
   std::size_t max_stack = 0;              ///< most entries a depth-first traversal can have waiting at once
 };
 

@@ -127,7 +127,7 @@ class Emitter {
     out_.references.assign(tree_.references.begin(), tree_.references.end());
     if (!tree_.splits_references) return;
     std::size_t next = 0;
-    std::vector<std::uint32_t> references(out_.references.size());
+    LargeVector<std::uint32_t> references(out_.references.size());
     for (tree::WideTree::Child& child : out_.children) {
       if (child.count == 0) continue;
       const std::span<std::uint32_t> ids = std::span(out_.references).subspan(child.first, child.count);

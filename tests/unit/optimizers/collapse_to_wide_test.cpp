@@ -222,7 +222,7 @@ TEST(CollapseToWide, node_cost_trades_nodes_for_blocks) {
 TEST(CollapseToWide, empty_tree_gives_no_nodes) {
   const auto wide = collapse(BinaryTree{}, {});
   EXPECT_EQ(wide.width, 8);
-  EXPECT_EQ(wide.first_child, std::vector<std::uint32_t>{0});
+  EXPECT_EQ(wide.first_child, LargeVector<std::uint32_t>{0});
   EXPECT_TRUE(wide.children.empty());
   EXPECT_TRUE(wide.bounds.is_empty());
   EXPECT_EQ(wide.max_stack, 0u);
