@@ -69,7 +69,9 @@ EmittedSubtree MortonEmitter::finish(const Split& split, const EmittedSubtree& l
 EmittedSubtree MortonEmitter::emit_small(MortonRange whole, Scratch& scratch) const {
   if (whole.size() == 1) return leaf(whole.first);
   // All divisions in depth-first order; backwards, the two halves of a range are always the last two subtrees made.
-  auto& [splits, open, made] = scratch;
+  std::vector<Split>& splits = scratch.splits;
+  std::vector<MortonRange>& open = scratch.open;
+  std::vector<EmittedSubtree>& made = scratch.made;
   splits.clear();
   open.assign(1, whole);
   made.clear();
