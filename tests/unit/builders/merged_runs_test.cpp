@@ -45,7 +45,7 @@ double merged(const tree::BinaryTree& tree) {
 constexpr const char* kBuilders[] = {"binned-sah", "sweep-sah", "lbvh", "hlbvh"};
 
 TEST(MergedRuns, AreThoseOfTheDefinitionAndStayTogether) {
-  const testing::Boxes boxes = testing::height_field(test::effort(130, 12));
+  const testing::Boxes boxes = testing::height_field(test::effort(130, 2));
   for (const std::size_t most : {2u, 3u, 16u}) {
     const auto first = first_of_runs(boxes, most, 1);
     ASSERT_LT(first.size(), boxes.size()) << "nothing to be merged";
