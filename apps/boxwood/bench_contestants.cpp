@@ -49,18 +49,16 @@ Status build_own(Own& own, bool is_first_tree, const BenchPlan& plan, const Inpu
   if (!built) return built.error();
   const bool is_first = own.accels.empty();
   if (is_first && is_first_tree) warn_excluded(input, report.excluded, session);
-  const auto resolved = builders::resolve_options(own.tree.build.builder, own.tree.build.settings);
-  if (!resolved) return resolved.error();
   for (std::size_t i = 0; i < plan.layouts.size(); ++i) {
     auto encoded = encode_tree(input.mesh, *built, plan.layouts[i], executors.chosen);
     if (!encoded) return encoded.error();
     BuildFigures& figures = *own.figures[i];
     figures.milliseconds[thread_index].push_back(1e3 * (report.seconds() + encoded->encode_seconds));
     if (is_first) {
-      describe(figures, *built, encoded->accel, resolved->cost());
+      describe(figures, *built, encoded->accel, own.tree.cost);
       if (plan.measures_trees)
         figures.measures =
-            i > 0 ? own.figures[0]->measures : measure_tree(*built, input.mesh, resolved->cost(), 0, *executors.chosen);
+            i > 0 ? own.figures[0]->measures : measure_tree(*built, input.mesh, own.tree.cost, 0, *executors.chosen);
       own.accels.push_back(std::make_shared<const Accel>(std::move(encoded->accel)));
     }
   }

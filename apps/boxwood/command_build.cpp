@@ -73,13 +73,11 @@ Result<Outcome> build_and_measure(const Options& options, const TreePlan& plan, 
   outcome.layout_nodes = encoded->accel.layout().node_count;
   outcome.isa = encoded->accel.isa();
   outcome.statistics = tree::statistics(tree);
-  const auto resolved = builders::resolve_options(plan.build.builder, plan.build.settings);
-  if (!resolved) return resolved.error();
-  outcome.cost = metrics::surface_area_cost(tree, resolved->cost());
+  outcome.cost = metrics::surface_area_cost(tree, plan.cost);
   if (options.measures) {
     progress.label("measuring the tree");
     const double start = now();
-    outcome.measures = measure_tree(tree, input.mesh, resolved->cost(), options.overlap_samples, *session.executor());
+    outcome.measures = measure_tree(tree, input.mesh, plan.cost, options.overlap_samples, *session.executor());
     outcome.measure_seconds = now() - start;
   }
   if (!options.skip_validation) {

@@ -40,6 +40,9 @@ struct TreePlan {
   builders::BuildOptions build;         ///< the builder itself, with the level's settings
   refs::Presplit presplit;
   optimizers::Optimizer optimizer;
+  /// Prices to compare trees by: those that were asked for, else the builder's defaults. What a level sets for its
+  /// builder is not among them, or Exp(T) of two levels would be in different units.
+  tree::CostModel cost;
 
   /// Key and value as text of all that was resolved: level (if any), builder, pre-split, optimizer, settings.
   std::vector<std::pair<std::string, std::string>> echo() const;

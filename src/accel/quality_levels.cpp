@@ -75,6 +75,7 @@ Result<TreePlan> plan_tree(const builders::BuildOptions& build, std::string_view
     }
     if (auto resolved = builders::resolve_options(plan.build.builder, plan.build.settings); !resolved)
       return resolved.error();
+    plan.cost = builders::resolve_options(plan.build.builder, build.settings)->cost();
     auto parsed_presplit = refs::parse_presplit(presplit.empty() ? "none" : presplit);
     if (!parsed_presplit) return parsed_presplit.error();
     plan.presplit = std::move(*parsed_presplit);

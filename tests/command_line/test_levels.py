@@ -22,6 +22,20 @@ class Levels(CommandLineTest):
                 self.assertEqual(named["options"].pop("level"), level["id"])
                 self.assertEqual(named["options"], spelt["options"])
 
+    def test_expected_costs_of_levels_and_builders_are_in_the_same_prices(self):
+        def row(*builder):
+            words = ["--rays", "primary", "--size", "8x8", "--repeat", 1, "--threads", 1, "--layouts", "linear"]
+            return self.report("bench", SCENE, "-b", *builder, *words)["rows"][0]
+
+        level = {row["id"]: row for row in self.report("levels")}["balanced"]
+        self.assertIn("cost.intersection", level["settings"])
+        prices = ["--set", "cost.traversal=1", "--set", "cost.intersection=1.5"]
+        for command in (row, lambda *words: self.report("build", SCENE, "-b", *words)):
+            unpriced = command("balanced")["surface_area_cost"]
+            own = command("balanced", "--set", f"cost.intersection={level['settings']['cost.intersection']}")
+            self.assertGreater(unpriced, 1.2 * own["surface_area_cost"])
+            self.assertGreater(unpriced, 0.9 * command("binned-sah", *prices)["surface_area_cost"])
+
     def test_balanced_is_the_default(self):
         self.assertEqual(self.report("build", SCENE)["options"]["level"], "balanced")
 
