@@ -11,7 +11,7 @@
 namespace boxwood::program {
 namespace {
 
-struct Options {
+struct AblateOptions {
   CommonOptions common;
   std::vector<std::string> inputs;
   InputOptions input;
@@ -64,7 +64,7 @@ std::string csv_text(const Json& rows) {
   return text;
 }
 
-Status run_ablate(Options& options) {
+Status run_ablate(AblateOptions& options) {
   const Session session("ablate", options.common, options.csv == "-" || options.markdown == "-");
   for (const std::string& path : {options.csv, options.markdown, options.common.json})
     if (Status status = check_output_folder(path); !status) return status;
@@ -116,7 +116,7 @@ Status run_ablate(Options& options) {
 }  // namespace
 
 void add_ablate_command(CLI::App& program, Run& run) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<AblateOptions>();
   options->pipeline.builder = "best";
   CLI::App& command = *program.add_subcommand("ablate", "What each technique is worth, by leaving it out alone");
   command.add_option("INPUT", options->inputs, kInputHelp)->required()->type_name("");

@@ -7,11 +7,11 @@
 namespace boxwood::program {
 namespace {
 
-struct Options : BenchOptions {
+struct BenchCommand : BenchOptions {
   std::string table = "full";
 };
 
-Status run_bench(const Options& options) {
+Status run_bench(const BenchCommand& options) {
   const Session session("bench", options.common, options.csv == "-");
   for (const std::string& path : {options.csv, options.common.json})
     if (Status status = check_output_folder(path); !status) return status;
@@ -48,7 +48,7 @@ Status run_bench(const Options& options) {
 }  // namespace
 
 void add_bench_command(CLI::App& program, Run& run) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BenchCommand>();
   CLI::App& command = *program.add_subcommand("bench", "Measure builders, layouts and rivals on the same rays");
   options->add_to(command);
   add_list(command, "-l,--layouts", options->layouts, "linear, wide4, wide8, wide8-quads, wide16, or all");

@@ -17,7 +17,7 @@
 namespace boxwood::program {
 namespace {
 
-struct Options {
+struct BuildOptions {
   CommonOptions common;
   PipelineOptions pipeline;
   InputOptions input_options;
@@ -55,7 +55,7 @@ Status validate(const Input& input, const tree::BinaryTree& tree, const layouts:
   return layouts::validate(layout, tree.references.span(), tree.splits_references, mesh);
 }
 
-Result<Outcome> build_and_measure(const Options& options, const TreePlan& plan, const Input& input,
+Result<Outcome> build_and_measure(const BuildOptions& options, const TreePlan& plan, const Input& input,
                                   const Session& session) {
   Outcome outcome;
   Progress progress("building " + options.pipeline.builder, session.shows_progress());
@@ -105,7 +105,7 @@ Json presplit_json(const Echo& echo, const refs::PresplitReport& presplit) {
   return json;
 }
 
-Json build_json(const Options& options, const Session& session, const Input& input, const Echo& echo,
+Json build_json(const BuildOptions& options, const Session& session, const Input& input, const Echo& echo,
                 const Outcome& outcome) {
   const tree::Statistics& shape = outcome.statistics;
   Json report = session.report(outcome.isa);
@@ -172,7 +172,7 @@ void print_measures(const Session& session, const Outcome& outcome) {
   line("per triangle", fmt::format("{:.4f} references", m.references_per_primitive));
 }
 
-void print_build(const Options& options, const Session& session, const Outcome& outcome) {
+void print_build(const BuildOptions& options, const Session& session, const Outcome& outcome) {
   const auto line = [&](const char* key, const std::string& value) { session.result("  {:<16} {}\n", key, value); };
   const tree::Statistics& shape = outcome.statistics;
   const double triangles = static_cast<double>(outcome.tree.primitive_count);
@@ -200,7 +200,7 @@ void print_build(const Options& options, const Session& session, const Outcome& 
                                 : "no");
 }
 
-Status run_build(const Options& options) {
+Status run_build(const BuildOptions& options) {
   const Session session("build", options.common);
   if (Status status = check_output_folder(options.common.json); !status) return status;
   const auto plan = options.pipeline.plan();
@@ -223,7 +223,7 @@ Status run_build(const Options& options) {
 }  // namespace
 
 void add_build_command(CLI::App& program, Run& run) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BuildOptions>();
   CLI::App& command = *program.add_subcommand("build", "Build a tree, check it and measure it");
   command.add_option("INPUT", options->input, kInputHelp)->required()->type_name("");
   options->input_options.add_to(command);

@@ -8,7 +8,7 @@
 namespace boxwood::program {
 namespace {
 
-struct Options {
+struct BuildersOptions {
   CommonOptions common;
   bool show_settings = false;
 };
@@ -68,7 +68,7 @@ std::string stands_for(const QualityLevel& level) {
   return text;
 }
 
-Status run_builders(const Options& options) {
+Status run_builders(const BuildersOptions& options) {
   const Session session("builders", options.common);
   Json report = Json::array();
   std::size_t width = 0;
@@ -90,7 +90,7 @@ Status run_builders(const Options& options) {
 }  // namespace
 
 void add_builders_command(CLI::App& program, Run& run) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BuildersOptions>();
   CLI::App& command = *program.add_subcommand("builders", "List the quality levels and the builders");
   command.add_flag("--settings", options->show_settings, "List each builder's options for --set too");
   options->common.add_to(command);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kSceneTriangles = 250'000;
 
-struct Options {
+struct DuelOptions {
   CommonOptions common;
   std::vector<std::string> inputs;
   InputOptions input;
@@ -30,7 +30,7 @@ std::vector<std::string> procedural_scenes() {
   return list;
 }
 
-std::string command_line(const Options& options) {
+std::string command_line(const DuelOptions& options) {
   std::string line = "boxwood duel";
   for (const std::string& input : options.inputs) line += " " + input.substr(input.rfind('/') + 1);
   if (options.procedural) line += " --procedural";
@@ -39,7 +39,7 @@ std::string command_line(const Options& options) {
   return line;
 }
 
-std::string markdown(const Options& options, const std::vector<duel::SceneResult>& results, const Session& session,
+std::string markdown(const DuelOptions& options, const std::vector<duel::SceneResult>& results, const Session& session,
                      const std::string& isa, double seconds) {
   std::time_t time = std::time(nullptr);
   char day[32];
@@ -55,7 +55,7 @@ std::string markdown(const Options& options, const std::vector<duel::SceneResult
   return text;
 }
 
-Status write_outputs(const Options& options, const std::string& markdown_text, const Json& cells) {
+Status write_outputs(const DuelOptions& options, const std::string& markdown_text, const Json& cells) {
   for (const auto& [path, text] : {std::pair{options.markdown, markdown_text}, {options.csv, duel::cells_csv(cells)}}) {
     if (path == "-")
       fmt::print("{}", text);
@@ -66,7 +66,7 @@ Status write_outputs(const Options& options, const std::string& markdown_text, c
 }
 
 /// Checks the options before anything is built.
-Status complete(Options& options, const Session& session) {
+Status complete(DuelOptions& options, const Session& session) {
   duel::Plan& plan = options.plan;
   const auto size = parse_size(options.size);
   if (!size) return size.error();
@@ -81,7 +81,7 @@ Status complete(Options& options, const Session& session) {
   return {};
 }
 
-Status run_duel(Options& options) {
+Status run_duel(DuelOptions& options) {
   const Session session("duel", options.common, options.csv == "-" || options.markdown == "-");
   for (const std::string& path : {options.csv, options.markdown, options.common.json})
     if (Status status = check_output_folder(path); !status) return status;
@@ -134,7 +134,7 @@ Status run_duel(Options& options) {
 }  // namespace
 
 void add_duel_command(CLI::App& program, Run& run) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DuelOptions>();
   duel::Plan& plan = options->plan;
   plan.fast = "fast", plan.balanced = "balanced", plan.best = "best";
   plan.layout = queries::default_layout(), plan.most_judged = 100;

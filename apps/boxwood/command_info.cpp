@@ -9,7 +9,7 @@
 namespace boxwood::program {
 namespace {
 
-struct Options {
+struct InfoOptions {
   CommonOptions common;
   InputOptions input_options;
   std::string input;
@@ -76,7 +76,7 @@ void print_info(const Session& session, const Input& input, const mesh::Report& 
   line(input.is_scene ? "made in" : "read in", fmt::format("{:.1f} ms", 1e3 * input.read_seconds));
 }
 
-Status run_info(const Options& options) {
+Status run_info(const InfoOptions& options) {
   const Session session("info", options.common);
   const auto input = load_input(options.input, options.input_options, session);
   if (!input) return input.error();
@@ -93,7 +93,7 @@ Status run_info(const Options& options) {
 }  // namespace
 
 void add_info_command(CLI::App& program, Run& run) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InfoOptions>();
   CLI::App& command = *program.add_subcommand("info", "Count, measure and check a mesh");
   command.add_option("INPUT", options->input, kInputHelp)->required()->type_name("");
   options->input_options.add_to(command);

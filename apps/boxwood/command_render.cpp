@@ -14,7 +14,7 @@
 namespace boxwood::program {
 namespace {
 
-struct Options {
+struct RenderOptions {
   CommonOptions common;
   PipelineOptions pipeline;
   InputOptions input_options;
@@ -46,7 +46,7 @@ Result<std::vector<std::uint32_t>> numbers_of_children(const tree::BinaryTree& t
 }
 
 /// What the shade shows of each triangle besides its hits.
-Result<std::vector<std::uint32_t>> numbers_of(const Options& options, render::Shade shade, const Input& input,
+Result<std::vector<std::uint32_t>> numbers_of(const RenderOptions& options, render::Shade shade, const Input& input,
                                               const Pipeline& pipeline, std::vector<std::uint32_t>&& split,
                                               const Session& session) {
   if (shade == render::Shade::children) return numbers_of_children(pipeline.tree, options.node.value_or(0));
@@ -56,7 +56,7 @@ Result<std::vector<std::uint32_t>> numbers_of(const Options& options, render::Sh
   return builders::edge_clusters(*references, options.rounds.value_or(1), mesh::Weld::position, {*session.executor()});
 }
 
-Status run_render(const Options& options) {
+Status run_render(const RenderOptions& options) {
   const Session session("render", options.common);
   const auto shade = render::find_shade(options.shade);
   if (!shade) return shade.error();
@@ -119,7 +119,7 @@ Status run_render(const Options& options) {
 }  // namespace
 
 void add_render_command(CLI::App& program, Run& run) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RenderOptions>();
   CLI::App& command = *program.add_subcommand("render", "Draw a mesh, or a heat map of what its rays cost, as PNG");
   command.add_option("INPUT", options->input, kInputHelp)->required()->type_name("");
   options->input_options.add_to(command);

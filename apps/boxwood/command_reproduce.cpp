@@ -14,7 +14,7 @@ namespace {
 
 using namespace reproduce;
 
-struct Options {
+struct ReproduceOptions {
   CommonOptions common;
   std::string table, size = "512x512", markdown, csv, charts, cameras;
   std::vector<std::string> inputs;
@@ -35,7 +35,7 @@ std::string today() {
   return std::strftime(text, sizeof text, "%Y-%m-%d", std::gmtime(&time)) ? text : "";
 }
 
-std::string command_line(const Options& options) {
+std::string command_line(const ReproduceOptions& options) {
   std::string line = "boxwood reproduce " + options.table;
   for (const std::string& input : options.inputs) line += " " + input.substr(input.rfind('/') + 1);
   line += fmt::format(" --size {} --random-rays {} --repeat {} --seed {}", options.size, options.random_rays,
@@ -50,7 +50,7 @@ struct Outputs {
   std::vector<std::pair<std::string, std::string>> charts;
 };
 
-Status write_outputs(const Options& options, const Outputs& outputs) {
+Status write_outputs(const ReproduceOptions& options, const Outputs& outputs) {
   for (const auto& [name, text] : outputs.charts)
     if (Status status = io::write_file(fmt::format("{}/{}.svg", options.charts, name), text); !status) return status;
   for (const auto& [path, text] : {std::pair{options.markdown, outputs.markdown}, {options.csv, outputs.csv}}) {
@@ -62,7 +62,7 @@ Status write_outputs(const Options& options, const Outputs& outputs) {
   return {};
 }
 
-Status run_reproduce(Options& options) {
+Status run_reproduce(ReproduceOptions& options) {
   const Session session("reproduce", options.common, options.csv == "-" || options.markdown == "-");
   for (const std::string& path : {options.csv, options.markdown, options.common.json,
                                   options.charts.empty() ? std::string() : options.charts + "/chart.svg"})
@@ -125,7 +125,7 @@ Status run_reproduce(Options& options) {
 }  // namespace
 
 void add_reproduce_command(CLI::App& program, Run& run) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReproduceOptions>();
   CLI::App& command = *program.add_subcommand("reproduce", "Make the papers' tables again, our values beside theirs");
   command.add_option("TABLE", options->table, "all, or one of: " + table_list())->required()->type_name("");
   command.add_option("INPUT", options->inputs, "Meshes or scenes instead of the procedural stand-ins")->type_name("");

@@ -11,15 +11,15 @@
 namespace boxwood::program {
 namespace {
 
-struct Options {
+struct SubdivideOptions {
   CommonOptions common;
   InputOptions input_options;
   std::string input, output;
   std::string presplit = "evh";
 };
 
-Json subdivide_json(const Session& session, const Input& input, const Options& options, const refs::Presplit& presplit,
-                    const refs::Subdivision& subdivision, double seconds) {
+Json subdivide_json(const Session& session, const Input& input, const SubdivideOptions& options,
+                    const refs::Presplit& presplit, const refs::Subdivision& subdivision, double seconds) {
   Json report = session.report({});
   report["mesh"] = input.json();
   report["options"] = {{"presplit", presplit.text()}};
@@ -38,7 +38,7 @@ Json subdivide_json(const Session& session, const Input& input, const Options& o
   return report;
 }
 
-void print_subdivision(const Session& session, const Input& input, const Options& options,
+void print_subdivision(const Session& session, const Input& input, const SubdivideOptions& options,
                        const refs::Subdivision& subdivision) {
   const auto line = [&](const char* key, const std::string& value) { session.result("  {:<12} {}\n", key, value); };
   session.result("{} written\n", options.output);
@@ -51,7 +51,7 @@ void print_subdivision(const Session& session, const Input& input, const Options
                    with_thousands(subdivision.open_edges_expected), with_thousands(subdivision.open_edges_after)));
 }
 
-Status run_subdivide(const Options& options) {
+Status run_subdivide(const SubdivideOptions& options) {
   const Session session("subdivide", options.common);
   const auto presplit = refs::parse_presplit(options.presplit);
   if (!presplit) return presplit.error();
@@ -83,7 +83,7 @@ Status run_subdivide(const Options& options) {
 }  // namespace
 
 void add_subdivide_command(CLI::App& program, Run& run) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SubdivideOptions>();
   CLI::App& command = *program.add_subcommand("subdivide", "Cut a mesh's triangles as the edge volume heuristic does");
   command.add_option("INPUT", options->input, kInputHelp)->required()->type_name("");
   options->input_options.add_to(command);

@@ -15,7 +15,7 @@
 namespace boxwood::program {
 namespace {
 
-struct Options {
+struct TraceOptions {
   CommonOptions common;
   PipelineOptions pipeline;
   InputOptions input_options;
@@ -67,7 +67,7 @@ Status write_answers(const std::string& path, const Answers& answers, bool any) 
   return io::write_hits(path, records);
 }
 
-Status run_trace(const Options& options) {
+Status run_trace(const TraceOptions& options) {
   const Session session("trace", options.common);
   const bool any = options.query == "any";
   const auto mode = queries::find_mode(options.mode);
@@ -111,7 +111,7 @@ Status run_trace(const Options& options) {
 }  // namespace
 
 void add_trace_command(CLI::App& program, Run& run) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TraceOptions>();
   CLI::App& command = *program.add_subcommand("trace", "Trace rays from a NumPy file, write the hits to another");
   command.add_option("INPUT", options->input, kInputHelp)->required()->type_name("");
   options->input_options.add_to(command);

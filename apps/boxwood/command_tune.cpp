@@ -12,7 +12,7 @@
 namespace boxwood::program {
 namespace {
 
-struct Options {
+struct TuneOptions {
   CommonOptions common;
   InputOptions input_options;
   std::string input, rays = "diffuse", query = "closest", mode = "robust", camera, size = "512x512";
@@ -26,7 +26,7 @@ bool is_file(const std::string& rays) {
   return rays.ends_with(".npy");
 }
 
-Result<std::vector<std::string>> read_kinds(const Options& options) {
+Result<std::vector<std::string>> read_kinds(const TuneOptions& options) {
   std::vector<std::string> kinds = split(options.rays, ',');
   for (const std::string& kind : kinds)
     if (std::find(std::begin(kKinds), std::end(kKinds), kind) == std::end(kKinds))
@@ -45,7 +45,7 @@ void deal_out(std::span<const Ray> rays, bool any, TuneRaySets& sets) {
   }
 }
 
-Status make_rays(const Options& options, const Input& input, const Session& session, TuneRaySets& sets) {
+Status make_rays(const TuneOptions& options, const Input& input, const Session& session, TuneRaySets& sets) {
   const auto kinds = read_kinds(options);
   if (!kinds) return kinds.error();
   const auto size = parse_size(options.size);
@@ -128,7 +128,7 @@ Json json_of(const TuneResult& r) {
   return json;
 }
 
-Json report_of(const Options& options, const Input& input, const TuneRaySets& rays, const Session& session,
+Json report_of(const TuneOptions& options, const Input& input, const TuneRaySets& rays, const Session& session,
                const std::string& isa) {
   Json report = session.report(isa);
   report["mesh"] = input.json();
@@ -139,7 +139,7 @@ Json report_of(const Options& options, const Input& input, const TuneRaySets& ra
   return report;
 }
 
-Status run_tune(const Options& options) {
+Status run_tune(const TuneOptions& options) {
   const Session session("tune", options.common);
   if (Status status = check_output_folder(options.common.json); !status) return status;
   const auto mode = queries::find_mode(options.mode);
@@ -187,7 +187,7 @@ Status run_tune(const Options& options) {
 }  // namespace
 
 void add_tune_command(CLI::App& program, Run& run) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TuneOptions>();
   CLI::App& command = *program.add_subcommand("tune", "Find builder, options and layout for a mesh and its rays");
   command.add_option("INPUT", options->input, kInputHelp)->required()->type_name("");
   options->input_options.add_to(command);

@@ -14,6 +14,8 @@
 
 namespace boxwood::builders {
 
+using boxwood::maximum, boxwood::minimum;  // of floats, or ours below would hide them
+
 #if defined(__SSE2__)
 
 struct Float4 {

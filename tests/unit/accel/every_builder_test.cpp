@@ -5,6 +5,7 @@
 
 #include "boxwood/accel.h"
 #include "boxwood/metrics.h"
+#include "support/builder_names.h"
 #include "support/effort.h"
 #include "support/meshes.h"
 
@@ -97,13 +98,6 @@ class EveryBuilder : public ::testing::TestWithParam<std::size_t> {
   }
 };
 
-std::string builder_name(const ::testing::TestParamInfo<std::size_t>& param) {
-  std::string name = builders::registry()[param.param].id;
-  for (char& c : name)
-    if (c == '-') c = '_';
-  return name;
-}
-
 std::string text(const Settings& settings) {
   std::string all = "settings:";
   for (const auto& [key, value] : settings) all += " " + key + "=" + value;
@@ -111,7 +105,7 @@ std::string text(const Settings& settings) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryBuilder, ::testing::Range<std::size_t>(0, builders::registry().size()),
-                         builder_name);
+                         test::builder_name);
 
 TEST(EveryBuilderCases, TheOracleAgreesWithDoublePrecision) {
   for (const Case& c : cases()) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "boxwood/accel.h"
+#include "support/builder_names.h"
 #include "support/effort.h"
 #include "support/meshes.h"
 
@@ -34,15 +35,8 @@ class PresplitMatrix : public ::testing::TestWithParam<std::size_t> {
   }
 };
 
-std::string builder_name(const ::testing::TestParamInfo<std::size_t>& param) {
-  std::string name = builders::registry()[param.param].id;
-  for (char& c : name)
-    if (c == '-') c = '_';
-  return name;
-}
-
 INSTANTIATE_TEST_SUITE_P(All, PresplitMatrix, ::testing::Range<std::size_t>(0, builders::registry().size()),
-                         builder_name);
+                         test::builder_name);
 
 TEST_P(PresplitMatrix, TreesAreValidAndTheSameForEveryNumberOfThreads) {
   SequentialExecutor sequential;

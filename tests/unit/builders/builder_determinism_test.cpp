@@ -3,6 +3,7 @@
 #include <tbb/global_control.h>
 
 #include "boxwood/builders.h"
+#include "support/builder_names.h"
 #include "support/effort.h"
 #include "unit/builders/box_count.h"
 #include "unit/builders/reference_shapes.h"
@@ -40,15 +41,8 @@ class BuilderDeterminism : public ::testing::TestWithParam<std::size_t> {
   }
 };
 
-std::string builder_name(const ::testing::TestParamInfo<std::size_t>& param) {
-  std::string name = builders::registry()[param.param].id;
-  for (char& c : name)
-    if (c == '-') c = '_';
-  return name;
-}
-
 INSTANTIATE_TEST_SUITE_P(All, BuilderDeterminism, ::testing::Range<std::size_t>(0, builders::registry().size()),
-                         builder_name);
+                         test::builder_name);
 
 TEST_P(BuilderDeterminism, Soup) {
   check(testing::soup(count(200000, 6000), 21));

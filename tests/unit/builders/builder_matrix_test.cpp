@@ -3,6 +3,7 @@
 
 #include "boxwood/builders.h"
 #include "boxwood/metrics.h"
+#include "support/builder_names.h"
 #include "support/effort.h"
 #include "unit/builders/reference_shapes.h"
 
@@ -39,15 +40,8 @@ class BuilderMatrix : public ::testing::TestWithParam<std::size_t> {
   }
 };
 
-std::string builder_name(const ::testing::TestParamInfo<std::size_t>& param) {
-  std::string name = builders::registry()[param.param].id;
-  for (char& c : name)
-    if (c == '-') c = '_';
-  return name;
-}
-
 INSTANTIATE_TEST_SUITE_P(All, BuilderMatrix, ::testing::Range<std::size_t>(0, builders::registry().size()),
-                         builder_name);
+                         test::builder_name);
 
 TEST_P(BuilderMatrix, DefaultsAreValidOnAwkwardShapes) {
   for (const testing::Shape& shape : testing::awkward_shapes()) check(shape, {});
