@@ -82,7 +82,7 @@ using Children = AlignedBuffer<tree::WideTree::Child>;
 Children order_children(const tree::WideTree& tree, Executor& executor) {
   const auto below = count_references(tree);
   Children children(tree.children.size());
-  executor.for_chunks(tree.first_child.size() - 1, 1024, [&](std::size_t, std::size_t begin, std::size_t end) {
+  executor.for_chunks(tree.first_child.size() - 1, 256, [&](std::size_t, std::size_t begin, std::size_t end) {
     std::vector<float> worth;
     for (std::size_t node = begin; node < end; ++node) {
       const std::uint32_t first = tree.first_child[node], count = tree.first_child[node + 1] - first;
@@ -111,7 +111,7 @@ void fill(Layout& layout, const tree::WideTree& tree, std::span<const tree::Wide
   layout.nodes = AlignedBuffer<std::byte>(nodes * sizeof(WideNode<W>));
   auto* out = reinterpret_cast<WideNode<W>*>(layout.nodes.data());
   auto* blocks = reinterpret_cast<typename Blocks::Block*>(layout.triangles.data());
-  executor.for_chunks(nodes, 1024, [&](std::size_t, std::size_t begin, std::size_t end) {
+  executor.for_chunks(nodes, 256, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const std::size_t first = tree.first_child[n], last = tree.first_child[n + 1];
       fill_node<W>(out[n], children.subspan(first, last - first), words.subspan(first, last - first));
@@ -127,7 +127,7 @@ template <class Blocks>
 std::pair<AlignedBuffer<std::uint32_t>, std::size_t> place_leaves(const tree::WideTree& tree, const Children& children,
                                                                   const MeshView& mesh, Executor& executor) {
   AlignedBuffer<std::uint32_t> words(children.size());
-  executor.for_chunks(words.size(), 4096, [&](std::size_t, std::size_t begin, std::size_t end) {
+  executor.for_chunks(words.size(), 1024, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c)
       words[c] = children[c].count == 0
                      ? children[c].first

@@ -24,7 +24,7 @@
 namespace boxwood::optimizers {
 namespace {
 
-constexpr std::uint32_t kPairsPerTask = 16384;
+constexpr std::uint32_t kPairsPerTask = 4096;
 
 /// What a subtree costs as a forest of so many trees: it never rises with their number.
 struct Costs {

@@ -5,6 +5,7 @@
 // skipped. O(n * bits / kDigitBits), deterministic.
 #include "parallel/radix_sort.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
@@ -14,7 +15,8 @@ namespace {
 
 constexpr int kDigitBits = 11;
 constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
-constexpr std::size_t kChunk = std::size_t{1} << 16;
+/// A chunk is large against the counters that it takes, yet there are some for every thread of a small machine.
+constexpr std::size_t kSmallestChunk = std::size_t{1} << 12, kLargestChunk = std::size_t{1} << 16;
 
 using Counts = std::array<std::uint32_t, kDigits>;
 
@@ -40,15 +42,16 @@ void radix_sort(AlignedBuffer<KeyedIndex>& items, int bits, Executor& executor) 
   const std::size_t size = items.size();
   if (size < 2) return;
   AlignedBuffer<KeyedIndex> other(size);
-  std::vector<Counts> chunks((size + kChunk - 1) / kChunk);
+  const std::size_t chunk_size = std::clamp(size / 8, kSmallestChunk, kLargestChunk);
+  std::vector<Counts> chunks((size + chunk_size - 1) / chunk_size);
   for (int shift = 0; shift < bits; shift += kDigitBits) {
-    executor.for_chunks(size, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    executor.for_chunks(size, chunk_size, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
       Counts counts{};
       for (std::size_t i = begin; i < end; ++i) ++counts[digit(items[i].key, shift)];
       chunks[chunk] = counts;
     });
     if (!place(chunks, size)) continue;
-    executor.for_chunks(size, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    executor.for_chunks(size, chunk_size, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
       Counts next = chunks[chunk];
       for (std::size_t i = begin; i < end; ++i) other[next[digit(items[i].key, shift)]++] = items[i];
     });

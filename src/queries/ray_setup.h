@@ -23,31 +23,56 @@ namespace boxwood::queries {
 /// Axis-parallel rays: the reciprocal is limited to 1e37 / max(M, 1). Every product stays finite, so no NaN arises, and
 /// a ray that lies exactly in a box's side has an interval of +-12 h * M * 1e37 (at most) there, which constrains
 /// nothing.
-struct RaySetup {
-  float origin[3];
-  float direction[3];  // scaled
-  float reciprocal[3];
-  float entry_add[3], exit_add[3];
-  int entry_plane[3], exit_plane[3];  // row of WideNode::planes
+struct RaySetup {  // [3] is never read: there to be written along by vectors of four
+  alignas(16) float origin[4];
+  float direction[4];  // scaled
+  float reciprocal[4];
+  float entry_add[4], exit_add[4];
+  int entry_plane[4], exit_plane[4];  // row of WideNode::planes
   float tmin, tmax;                   // of the scaled direction
   float t_scale;                      // t of the user's direction = t_scale * t of the scaled one; a power of two
   int kx, ky, kz;                     // kz: axis of the largest direction component
   float shear_x, shear_y, inverse_z;
+  double exact_shear_x, exact_shear_y;  // what shear_x and shear_y are rounded from
 };
+
+inline constexpr int kNextAxis[3] = {1, 2, 0};
+
+/// Exponents, as floats have them in bits 23 to 30, that a direction's largest component is taken to have: those for
+/// which both the power of two and its inverse are normal numbers.
+inline constexpr int kLowestExponent = 1, kHighestExponent = 253;
+
+/// `down` and `up`: the power of two that directions are multiplied by, and its inverse. False when the interval is empty.
+inline bool set_interval(const Ray& ray, float down, float up, RaySetup& s) {
+  s.t_scale = down;
+  s.tmin = ray.tmin > 0 ? ray.tmin * up : 0.0f;
+  s.tmax = ray.tmax * up;
+  return s.tmin <= s.tmax && !std::isnan(ray.tmin);
+}
+
+/// Everything that follows from the main axis and the scaled direction.
+inline void set_main_axis(int axis, RaySetup& s) {
+  s.kz = axis;
+  s.kx = kNextAxis[axis];
+  s.ky = kNextAxis[s.kx];
+  const float dz = s.direction[s.kz];
+  s.inverse_z = 1.0f / dz;
+  s.exact_shear_x = static_cast<double>(s.direction[s.kx]) / dz;
+  s.exact_shear_y = static_cast<double>(s.direction[s.ky]) / dz;
+  s.shear_x = static_cast<float>(s.exact_shear_x);
+  s.shear_y = static_cast<float>(s.exact_shear_y);
+}
 
 /// False when nothing can be hit: NaN or infinity in origin or direction, zero direction, empty interval.
 inline bool set_up(const Ray& ray, const Box& bounds, RaySetup& s) {
   const Vec3 d = ray.direction;
   const float largest = maximum(maximum(std::fabs(d.x), std::fabs(d.y)), std::fabs(d.z));
   if (!(largest > 0) || !is_finite(d) || !is_finite(ray.origin)) return false;
-  int exponent = static_cast<int>(std::bit_cast<std::uint32_t>(largest) >> 23) - 127;
-  exponent = exponent < -126 ? -126 : exponent > 126 ? 126 : exponent;
-  const float down = std::bit_cast<float>(static_cast<std::uint32_t>(127 - exponent) << 23);  // 2^-exponent
-  const float up = std::bit_cast<float>(static_cast<std::uint32_t>(127 + exponent) << 23);    // 2^exponent
-  s.t_scale = down;
-  s.tmin = ray.tmin > 0 ? ray.tmin * up : 0.0f;
-  s.tmax = ray.tmax * up;
-  if (!(s.tmin <= s.tmax) || std::isnan(ray.tmin)) return false;
+  int exponent = static_cast<int>(std::bit_cast<std::uint32_t>(largest) >> 23);
+  exponent = exponent < kLowestExponent ? kLowestExponent : exponent > kHighestExponent ? kHighestExponent : exponent;
+  const float down = std::bit_cast<float>((254u - static_cast<std::uint32_t>(exponent)) << 23);
+  const float up = std::bit_cast<float>(static_cast<std::uint32_t>(exponent) << 23);
+  if (!set_interval(ray, down, up, s)) return false;
   for (int axis = 0; axis < 3; ++axis) {
     const float o = s.origin[axis] = ray.origin[axis];
     const float da = s.direction[axis] = d[axis] * down;
@@ -64,13 +89,7 @@ inline bool set_up(const Ray& ray, const Box& bounds, RaySetup& s) {
     s.exit_plane[axis] = 2 * axis + !negative;
   }
   const float x = std::fabs(s.direction[0]), y = std::fabs(s.direction[1]), z = std::fabs(s.direction[2]);
-  s.kz = x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2);
-  s.kx = s.kz == 2 ? 0 : s.kz + 1;
-  s.ky = s.kx == 2 ? 0 : s.kx + 1;
-  const float dz = s.direction[s.kz];
-  s.inverse_z = 1.0f / dz;
-  s.shear_x = s.direction[s.kx] / dz;
-  s.shear_y = s.direction[s.ky] / dz;
+  set_main_axis(x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2), s);
   return true;
 }
 

@@ -48,7 +48,8 @@ struct EdgeFunctions {
   bool inside() const { return !((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) && u + v + w != 0; }
   /// Makes the three weights convex up to their sum, whatever side rounding left them on, and gives the sum.
   double clamp() {
-    if (u + v + w < 0) u = -u, v = -v, w = -w;
+    const double sign = std::copysign(1.0, u + v + w);  // either winding is as likely, so a branch would be a bad guess
+    u *= sign, v *= sign, w *= sign;
     u = u > 0 ? u : 0, v = v > 0 ? v : 0, w = w > 0 ? w : 0;
     return u + v + w;
   }
@@ -76,14 +77,12 @@ inline bool robust_test(const PermutedTriangle& triangle, const RaySetup& ray, S
 class Location {
  public:
   [[gnu::always_inline]] Location(const PermutedTriangle& triangle, const RaySetup& ray) {
-    // The shear once more without rounding it to single precision; few triangles come here, so not once per ray.
     const double dz = ray.direction[ray.kz];
-    const double shear_x = ray.direction[ray.kx] / dz, shear_y = ray.direction[ray.ky] / dz;
     double x[3], y[3], z[3];
     for (int i = 0; i < 3; ++i) {
       z[i] = double(triangle.z[i]) - ray.origin[ray.kz];
-      x[i] = (double(triangle.x[i]) - ray.origin[ray.kx]) - shear_x * z[i];
-      y[i] = (double(triangle.y[i]) - ray.origin[ray.ky]) - shear_y * z[i];
+      x[i] = (double(triangle.x[i]) - ray.origin[ray.kx]) - ray.exact_shear_x * z[i];
+      y[i] = (double(triangle.y[i]) - ray.origin[ray.ky]) - ray.exact_shear_y * z[i];
     }
     weights_ = EdgeFunctions(x, y);
     sum_ = weights_.clamp();

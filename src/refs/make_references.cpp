@@ -7,7 +7,7 @@
 namespace boxwood::refs {
 namespace {
 
-constexpr std::size_t kChunk = 1 << 14;
+constexpr std::size_t kChunk = 1 << 12;
 
 struct Filled {
   std::size_t count = 0;

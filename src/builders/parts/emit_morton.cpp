@@ -16,7 +16,6 @@ namespace boxwood::builders {
 namespace {
 
 constexpr std::uint32_t kTaskSize = 4096;
-constexpr std::size_t kRangesPerChunk = 16;
 
 }  // namespace
 
@@ -115,10 +114,19 @@ std::vector<EmittedSubtree> MortonEmitter::emit(std::span<const MortonRange> ran
     open.push_back({range.first, m});
   }
 
+  // Treelets may be of a few references each, so several make a piece of work.
+  std::vector<std::size_t> pieces{0};
+  std::uint32_t size = 0;
+  for (std::size_t t = 0; t < tasks.size(); ++t) {
+    size += tasks[t].size();
+    if (size < kTaskSize / 2 && t + 1 < tasks.size()) continue;
+    pieces.push_back(t + 1);
+    size = 0;
+  }
   std::vector<EmittedSubtree> task_roots(tasks.size());
-  executor.for_chunks(tasks.size(), kRangesPerChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+  executor.for_chunks(pieces.size() - 1, 1, [&](std::size_t piece, std::size_t, std::size_t) {
     Scratch scratch;
-    for (std::size_t t = begin; t < end; ++t) {
+    for (std::size_t t = pieces[piece]; t < pieces[piece + 1]; ++t) {
       if (cancel_ && cancel_->load(std::memory_order_relaxed)) return;
       task_roots[t] = emit_small(tasks[t], scratch);
     }

@@ -13,7 +13,7 @@ namespace {
 
 using refs::Reference;
 
-constexpr std::size_t kChunk = std::size_t{1} << 14;
+constexpr std::size_t kChunk = std::size_t{1} << 12;
 
 std::size_t chunk_count(std::size_t count) {
   return (count + kChunk - 1) / kChunk;

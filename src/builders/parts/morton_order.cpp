@@ -7,7 +7,7 @@
 namespace boxwood::builders {
 namespace {
 
-constexpr std::size_t kChunk = std::size_t{1} << 15;
+constexpr std::size_t kChunk = std::size_t{1} << 12;
 
 Box centroid_bounds(std::span<const refs::Reference> references, Executor& executor) {
   std::vector<Box> boxes((references.size() + kChunk - 1) / kChunk);

@@ -157,7 +157,7 @@ class Interleaved {
   HWY_INLINE bool start(std::uint32_t slot) {
     Flight& flight = flights_[slot];
     for (; next_ < count_; ++next_) {
-      if (layout_.root == layouts::kNoRoot || !set_up(rays_[next_], layout_.bounds, flight.setup)) {
+      if (layout_.root == layouts::kNoRoot || !set_up_ray<kRobust>(rays_[next_], layout_.bounds, flight.setup)) {
         miss(next_);
         continue;
       }

@@ -20,6 +20,7 @@
 #include <memory>
 
 #include "boxwood/queries.h"
+#include "queries/kernels/ray_setup-inl.h"
 #include "queries/triangle_test.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -74,7 +75,10 @@ template <class D>
 HWY_INLINE std::uint64_t mask_bits(D d, hn::Mask<D> mask) {
   alignas(8) std::uint8_t bytes[8] = {};
   hn::StoreMaskBits(d, mask, bytes);
-  return (bytes[0] | bytes[1] << 8) & ((1u << hn::Lanes(d)) - 1);
+  if (hn::Lanes(d) <= 8) return bytes[0] & ((1u << hn::Lanes(d)) - 1);
+  std::uint16_t two;  // read at once: put together from bytes it would lengthen each step by some cycles
+  std::memcpy(&two, bytes, sizeof two);
+  return two;
 }
 
 /// A corner in a block of planes: its coordinates are `stride` floats apart.
@@ -96,17 +100,59 @@ HWY_INLINE PermutedTriangle permuted(const typename Leaf::Block& block, int lane
   return {{a[ray.kx], b[ray.kx], c[ray.kx]}, {a[ray.ky], b[ray.ky], c[ray.ky]}, {a[ray.kz], b[ray.kz], c[ray.kz]}};
 }
 
-/// Takes a triangle that single precision has found hit, or can't decide on, for the best hit if it is nearer. Kept out
-/// of line: the double-precision code would crowd the traversal's registers.
+/// What consider does with the triangles that vectors don't decide: kept out of line, they are few.
 template <class Leaf>
-HWY_NOINLINE void consider(const typename Leaf::Block& block, int lane, bool doubtful, const RaySetup& ray,
-                           Best<Leaf>& best) {
+HWY_NOINLINE void consider_with_care(const typename Leaf::Block& block, int lane, bool doubtful, const RaySetup& ray,
+                                     Best<Leaf>& best) {
   const PermutedTriangle triangle = permuted<Leaf>(block, lane, ray);
   ShearedTriangle sheared;
-  if (HWY_UNLIKELY(doubtful) && !robust_test(triangle, ray, sheared)) return;
+  if (doubtful && !robust_test(triangle, ray, sheared)) return;
   const Location at(triangle, ray);
   const std::uint32_t id = Leaf::primitive(block, lane);
   if (best.takes(at.t(), ray.tmin, id)) best = {at.t(), id, &block, lane, at.u_times_sum(), at.v_times_sum(), at.sum()};
+}
+
+/// Takes a triangle that single precision has found hit, or can't decide on, for the best hit if it is nearer. The class
+/// Location of triangle_test.h, with one vector for the three corners.
+template <class Leaf>
+HWY_INLINE void consider(const typename Leaf::Block& block, int lane, bool doubtful, const RaySetup& ray,
+                         Best<Leaf>& best) {
+#if HWY_MAX_BYTES < 32
+  consider_with_care<Leaf>(block, lane, doubtful, ray, best);
+#else
+  if (HWY_UNLIKELY(doubtful)) return consider_with_care<Leaf>(block, lane, doubtful, ray, best);
+  using Floats = hn::FixedTag<float, 4>;
+  using Doubles = hn::FixedTag<double, 4>;
+  const Floats d;
+  const Doubles dd;
+  const hn::Half<Doubles> half;
+  const CornerAt a = Leaf::corner(block, lane, 0), b = Leaf::corner(block, lane, 1), c = Leaf::corner(block, lane, 2);
+  const auto relative = [&](int axis) HWY_ATTR {
+    const auto ab = hn::InterleaveLower(hn::Set(d, a[axis]), hn::Set(d, b[axis]));
+    const auto corners = hn::PromoteTo(dd, hn::ConcatLowerLower(d, hn::Set(d, c[axis]), ab));
+    return hn::Sub(corners, hn::Set(dd, static_cast<double>(ray.origin[axis])));
+  };
+  const auto z = relative(ray.kz);
+  const auto x = hn::Sub(relative(ray.kx), hn::Mul(hn::Set(dd, ray.exact_shear_x), z));
+  const auto y = hn::Sub(relative(ray.ky), hn::Mul(hn::Set(dd, ray.exact_shear_y), z));
+  alignas(32) static constexpr std::int64_t kBefore[4] = {2, 0, 1, 1}, kBehind[4] = {1, 2, 0, 0};
+  const auto before = hn::SetTableIndices(dd, kBefore), behind = hn::SetTableIndices(dd, kBehind);
+  const auto edges = hn::Sub(hn::Mul(hn::TableLookupLanes(x, before), hn::TableLookupLanes(y, behind)),
+                             hn::Mul(hn::TableLookupLanes(y, before), hn::TableLookupLanes(x, behind)));
+  const auto sum_of_three = [&](auto v) HWY_ATTR {
+    const auto low = hn::LowerHalf(half, v);
+    return hn::GetLane(low) + hn::GetLane(hn::Shuffle01(low)) + hn::GetLane(hn::UpperHalf(half, v));
+  };
+  const auto sign = hn::CopySign(hn::Set(dd, 1.0), hn::Set(dd, sum_of_three(edges)));
+  const auto weights = hn::Max(hn::Mul(edges, sign), hn::Zero(dd));
+  const double sum = sum_of_three(weights);
+  if (HWY_UNLIKELY(!(sum > 0))) return consider_with_care<Leaf>(block, lane, doubtful, ray, best);
+  const auto t = static_cast<float>(sum_of_three(hn::Mul(weights, z)) / (sum * ray.direction[ray.kz]));
+  const std::uint32_t id = Leaf::primitive(block, lane);
+  if (!best.takes(t, ray.tmin, id)) return;
+  const auto low = hn::LowerHalf(half, weights);
+  best = {t, id, &block, lane, hn::GetLane(hn::Shuffle01(low)), hn::GetLane(hn::UpperHalf(half, weights)), sum};
+#endif
 }
 
 /// The robust test from the edge functions on: u, v and w of the corners a, b and c, with any sign common to all three,
@@ -382,7 +428,7 @@ template <int W, class Leaf, bool kRobust, bool kAny, bool kCount>
 HWY_INLINE bool trace(const Layout& layout, const Ray& ray, RaySetup& setup, Best<Leaf>& best, StackEntry* stack,
                       Counts* counts) {
   if constexpr (kCount) counts->rays = 1;
-  if (layout.root == layouts::kNoRoot || !set_up(ray, layout.bounds, setup)) return false;
+  if (layout.root == layouts::kNoRoot || !set_up_ray<kRobust>(ray, layout.bounds, setup)) return false;
   best.t = setup.tmax;
   const bool hit = traverse<W, Leaf, kRobust, kAny, kCount>(layout, setup, stack, best, counts);
   if constexpr (kCount) counts->hits = hit;
