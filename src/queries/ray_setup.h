@@ -42,7 +42,8 @@ inline constexpr int kNextAxis[3] = {1, 2, 0};
 /// which both the power of two and its inverse are normal numbers.
 inline constexpr int kLowestExponent = 1, kHighestExponent = 253;
 
-/// `down` and `up`: the power of two that directions are multiplied by, and its inverse. False when the interval is empty.
+/// `down` and `up`: the power of two that directions are multiplied by, and its inverse. False when the interval is
+/// empty.
 inline bool set_interval(const Ray& ray, float down, float up, RaySetup& s) {
   s.t_scale = down;
   s.tmin = ray.tmin > 0 ? ray.tmin * up : 0.0f;

@@ -424,7 +424,7 @@ bool trace_packet(const Layout& layout, const Ray* rays, const Tile& tile, Packe
       const auto active = hn::Eq(hn::Load(d, packet.signature + i), mine);
       hn::Store(hn::IfThenElse(active, hn::Load(d, packet.tmax + i), hn::Set(d, -kInfinity)), d, packet.limit + i);
     }
-    if (layout.root != layouts::kNoRoot && !traversal.run(signature, stack.data())) return false;
+    if (layout.root != layouts::kNoRoot && !traversal.run(signature, stack.entries())) return false;
     answer<Leaf, kAny>(layout, packet, static_cast<float>(signature), answers);
   }
   return true;

@@ -1,5 +1,5 @@
-// set_up of ray_setup.h with one vector for the three axes: a fifth to a third of a ray's time was there. Compiled once per
-// instruction set by the sources that include it; no include guard of the usual kind for that reason.
+// set_up of ray_setup.h with one vector for the three axes: a fifth to a third of a ray's time was there. Compiled once
+// per instruction set by the sources that include it; no include guard of the usual kind for that reason.
 #if defined(BOXWOOD_QUERIES_KERNELS_RAY_SETUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BOXWOOD_QUERIES_KERNELS_RAY_SETUP_INL_H_
 #undef BOXWOOD_QUERIES_KERNELS_RAY_SETUP_INL_H_
