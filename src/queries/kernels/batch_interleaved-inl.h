@@ -243,7 +243,7 @@ class Interleaved {
     if constexpr (kRobust)
       Leaf::template robust<kAny>(blocks_[first], flight.setup, flight.best);
     else
-      Leaf::fast(blocks_[first], flight.setup, flight.best);
+      Leaf::template fast<kAny>(blocks_[first], flight.setup, flight.best);
     if constexpr (kAny) top_[slot] = flight.best.block ? 1 : top_[slot];
   }
 

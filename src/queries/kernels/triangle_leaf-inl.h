@@ -10,6 +10,7 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -43,21 +44,6 @@ HWY_INLINE auto same_sign(D d, V u, V v, V w) {
   return hn::Or(hn::Ge(hn::Min(hn::Min(u, v), w), zero), hn::Le(hn::Max(hn::Max(u, v), w), zero));
 }
 
-/// Hands the lanes of `mask` to `best`, lowest lane first.
-template <class Leaf, class D, class V>
-HWY_INLINE void offer_lanes(D d, std::uint64_t mask, V t, V u, V v, const typename Leaf::Block& block, int first_lane,
-                            const RaySetup& ray, Best<Leaf>& best) {
-  alignas(64) float ts[8], us[8], vs[8];
-  hn::Store(t, d, ts);
-  hn::Store(u, d, us);
-  hn::Store(v, d, vs);
-  for (; mask; mask &= mask - 1) {
-    const int lane = std::countr_zero(mask);
-    const std::uint32_t id = Leaf::primitive(block, first_lane + lane);
-    if (best.takes(ts[lane], ray.tmin, id)) best = {ts[lane], id, &block, first_lane + lane, us[lane], vs[lane], 1};
-  }
-}
-
 /// The mask's bits, of up to 16 lanes.
 template <class D>
 HWY_INLINE std::uint64_t mask_bits(D d, hn::Mask<D> mask) {
@@ -67,6 +53,27 @@ HWY_INLINE std::uint64_t mask_bits(D d, hn::Mask<D> mask) {
   std::uint16_t two;  // read at once: put together from bytes it would lengthen each step by some cycles
   std::memcpy(&two, bytes, sizeof two);
   return two;
+}
+
+/// Hands the lanes of `mask` to `best`, lowest lane first. Any hit will do for `kAny`: there only best.block is set.
+template <class Leaf, bool kAny, class D, class V>
+HWY_INLINE void offer_lanes(D d, std::uint64_t mask, V t, V u, V v, const typename Leaf::Block& block, int first_lane,
+                            const RaySetup& ray, Best<Leaf>& best) {
+  mask &= mask_bits(d, hn::And(hn::Ge(t, hn::Set(d, ray.tmin)), hn::Le(t, hn::Set(d, best.t))));
+  if (!mask) return;
+  if constexpr (kAny) {
+    best.block = &block;
+    return;
+  }
+  alignas(64) float ts[8], us[8], vs[8];
+  hn::Store(t, d, ts);
+  hn::Store(u, d, us);
+  hn::Store(v, d, vs);
+  for (; mask; mask &= mask - 1) {
+    const int lane = std::countr_zero(mask);
+    const std::uint32_t id = Leaf::primitive(block, first_lane + lane);
+    if (best.takes(ts[lane], ray.tmin, id)) best = {ts[lane], id, &block, first_lane + lane, us[lane], vs[lane], 1};
+  }
 }
 
 /// A corner in a block of planes: its coordinates are `stride` floats apart.
@@ -131,15 +138,17 @@ HWY_INLINE void consider(const typename Leaf::Block& block, int lane, bool doubt
     const auto low = hn::LowerHalf(half, v);
     return hn::GetLane(low) + hn::GetLane(hn::Shuffle01(low)) + hn::GetLane(hn::UpperHalf(half, v));
   };
-  const auto sign = hn::CopySign(hn::Set(dd, 1.0), hn::Set(dd, sum_of_three(edges)));
-  const auto weights = hn::Max(hn::Mul(edges, sign), hn::Zero(dd));
-  const double sum = sum_of_three(weights);
-  if (HWY_UNLIKELY(!(sum > 0))) return consider_with_care<Leaf>(block, lane, doubtful, ray, best);
-  const auto t = static_cast<float>(sum_of_three(hn::Mul(weights, z)) / (sum * ray.direction[ray.kz]));
+  // Where all three have one sign there is nothing to clamp, and the sign itself cancels out.
+  const std::uint64_t positive = mask_bits(dd, hn::Gt(edges, hn::Zero(dd))) & 7;
+  const std::uint64_t negative = mask_bits(dd, hn::Lt(edges, hn::Zero(dd))) & 7;
+  if (HWY_UNLIKELY(std::max(positive, negative) != 7))  // one question: which of the two it is is a bad guess
+    return consider_with_care<Leaf>(block, lane, doubtful, ray, best);
+  const double sum = sum_of_three(edges);
+  const auto t = static_cast<float>(sum_of_three(hn::Mul(edges, z)) / (sum * ray.direction[ray.kz]));
   const std::uint32_t id = Leaf::primitive(block, lane);
   if (!best.takes(t, ray.tmin, id)) return;
-  const auto low = hn::LowerHalf(half, weights);
-  best = {t, id, &block, lane, hn::GetLane(hn::Shuffle01(low)), hn::GetLane(hn::UpperHalf(half, weights)), sum};
+  const auto low = hn::LowerHalf(half, edges);
+  best = {t, id, &block, lane, hn::GetLane(hn::Shuffle01(low)), hn::GetLane(hn::UpperHalf(half, edges)), sum};
 #endif
 }
 
@@ -180,7 +189,7 @@ HWY_INLINE V dot_without_fusing(D, V ax, V ay, V az, V bx, V by, V bz) {
 }
 
 /// The fast test on triangles given by their first corner and the edges from there to the second and the third.
-template <class Leaf, class D, class V>
+template <class Leaf, bool kAny, class D, class V>
 HWY_INLINE void fast_lanes(D d, V v0x, V v0y, V v0z, V e1x, V e1y, V e1z, V e2x, V e2y, V e2z,
                            const typename Leaf::Block& block, int first_lane, const RaySetup& ray, Best<Leaf>& best) {
   const auto dx = hn::Set(d, ray.direction[0]), dy = hn::Set(d, ray.direction[1]), dz = hn::Set(d, ray.direction[2]);
@@ -203,7 +212,7 @@ HWY_INLINE void fast_lanes(D d, V v0x, V v0y, V v0z, V e1x, V e1y, V e1z, V e2x,
   if (!mask) return;
   const auto r = hn::Div(hn::Set(d, 1.0f), determinant);
   const auto t = hn::Mul(dot_without_fusing(d, e2x, e2y, e2z, qx, qy, qz), r);
-  offer_lanes<Leaf>(d, mask, t, hn::Mul(u, r), hn::Mul(v, r), block, first_lane, ray, best);
+  offer_lanes<Leaf, kAny>(d, mask, t, hn::Mul(u, r), hn::Mul(v, r), block, first_lane, ray, best);
 }
 
 /// What the traversal asks of a kind of leaf block; the other kind is in wide_quads-inl.h.
@@ -252,15 +261,16 @@ struct TriangleLeaf {
     return hn::Sub(hn::Load(d, block.corner[k][axis] + lane), hn::Load(d, block.corner[0][axis] + lane));
   }
 
+  template <bool kAny>
   static HWY_INLINE void fast(const Block& block, const RaySetup& ray, Best<TriangleLeaf>& best) {
     const hn::CappedTag<float, 4> d;
     const int step = static_cast<int>(hn::Lanes(d));
     for (int lane = 0; lane < 4; lane += step) {
       const auto e1x = edge(d, block, 1, 0, lane), e1y = edge(d, block, 1, 1, lane), e1z = edge(d, block, 1, 2, lane);
       const auto e2x = edge(d, block, 2, 0, lane), e2y = edge(d, block, 2, 1, lane), e2z = edge(d, block, 2, 2, lane);
-      fast_lanes<TriangleLeaf>(d, hn::Load(d, block.corner[0][0] + lane), hn::Load(d, block.corner[0][1] + lane),
-                               hn::Load(d, block.corner[0][2] + lane), e1x, e1y, e1z, e2x, e2y, e2z, block, lane, ray,
-                               best);
+      fast_lanes<TriangleLeaf, kAny>(d, hn::Load(d, block.corner[0][0] + lane), hn::Load(d, block.corner[0][1] + lane),
+                                     hn::Load(d, block.corner[0][2] + lane), e1x, e1y, e1z, e2x, e2y, e2z, block, lane,
+                                     ray, best);
     }
   }
 };

@@ -167,7 +167,7 @@ HWY_INLINE void test_leaf(const typename Leaf::Block* block, const typename Leaf
     if constexpr (kRobust)
       Leaf::template robust<kAny>(*block, ray, best);
     else
-      Leaf::fast(*block, ray, best);
+      Leaf::template fast<kAny>(*block, ray, best);
     if (kAny && best.block) return;
   } while (++block != end);
 }

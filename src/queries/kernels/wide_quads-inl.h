@@ -66,6 +66,7 @@ struct QuadLeaf {
     }
   }
 
+  template <bool kAny>
   static HWY_INLINE void fast(const Block& block, const RaySetup& ray, Best<QuadLeaf>& best) {
     const hn::CappedTag<float, 8> d;
     const hn::RebindToUnsigned<decltype(d)> du;
@@ -89,7 +90,7 @@ struct QuadLeaf {
       corners(0, v0x, e1x, e2x);
       corners(1, v0y, e1y, e2y);
       corners(2, v0z, e1z, e2z);
-      fast_lanes<QuadLeaf>(d, v0x, v0y, v0z, e1x, e1y, e1z, e2x, e2y, e2z, block, lane, ray, best);
+      fast_lanes<QuadLeaf, kAny>(d, v0x, v0y, v0z, e1x, e1y, e1z, e2x, e2y, e2z, block, lane, ray, best);
     }
   }
 };
