@@ -50,7 +50,7 @@ def main():
     parser.add_argument("--only", default="duel,duel-again,ablation,scaling,roofline")
     parser.add_argument("--cameras")
     parser.add_argument("--document", type=pathlib.Path, default=ROOT / "docs/performance.md")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()  # meshes may stand behind options
     known = commands(options)
     for name in options.only.split(","):
         if name not in known:
