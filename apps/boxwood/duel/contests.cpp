@@ -64,7 +64,10 @@ std::span<const Contest> contests() {
 
 bool Summary::meets(double limit) const {
   if (contest->is_bytes) return mean <= limit;
-  return mean >= limit && (contest->no_cell_under == 0 || worst->value() >= contest->no_cell_under);
+  if (mean < limit) return false;
+  return std::all_of(cells.begin(), cells.end(), [&](const Cell* cell) {
+    return scene_value(*this, cell->scene).value_or(1) >= contest->no_scene_under;
+  });
 }
 
 const char* Summary::verdict() const {

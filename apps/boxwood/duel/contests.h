@@ -18,7 +18,7 @@ struct Contest {
   const char* rays;  ///< only cells of these; empty: all
   const char* title;
   double at_least, aim;            ///< of the geometric mean
-  double no_cell_under = 0;        ///< and of every cell; 0: none
+  double no_scene_under = 0;       ///< and of every scene's mean; 0: none
   std::size_t triangles_over = 0;  ///< only scenes larger than that
   bool is_bytes = false;           ///< bytes per triangle: less is better, and `at_least` is at most
 };
