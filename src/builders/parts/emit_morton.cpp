@@ -1,9 +1,9 @@
 // The radix tree over sorted Morton codes (Lauterbach et al. 2009, bib key lbvh; Karras 2012, bib key karras2012): a
-// range is divided where the highest bit that is not the same in all its codes changes, found by bisection; a range of
-// equal codes is divided in the middle. So the depth is at most 63 plus the logarithm of the largest number of equal
-// codes. Unlike Karras' tree, which gives every node a thread, ranges are divided from the top until they are small;
-// the small ones are the parallel tasks. How it is cut depends on the ranges only, so all thread counts give equal
-// bits.
+// range is divided where the highest bit that is not the same in all its codes changes; a range of equal codes is
+// divided in the middle. So the depth is at most 63 plus the logarithm of the largest number of equal codes. Unlike
+// Karras' tree, which gives every node a thread, ranges are divided from the top, by bisection, until they are small;
+// the small ones are the parallel tasks, each made from left to right in linear time. How it is cut depends on the
+// ranges only, so all thread counts give equal bits.
 //
 // Boxes and prices are made on the way back up. Unlike in the papers, where leaves are single references or what is
 // left when the bits end, a range within the limit becomes a leaf where that is no dearer by the surface area
@@ -27,6 +27,13 @@ struct MortonEmitter::Split {
 
 /// What one small range after the other is worked on with.
 struct MortonEmitter::Scratch {
+  /// A subtree that may still get a right neighbour, and the bits in which its last code differs from the next one.
+  struct Waiting {
+    EmittedSubtree subtree;
+    std::uint32_t first;
+    std::uint64_t step;
+  };
+  std::vector<Waiting> waiting;
   std::vector<Split> splits;
   std::vector<MortonRange> open;
   std::vector<EmittedSubtree> made;
@@ -65,7 +72,8 @@ EmittedSubtree MortonEmitter::finish(const Split& split, const EmittedSubtree& l
   return {{box, 2 * split.middle - 1, 0}, inner_cost};
 }
 
-EmittedSubtree MortonEmitter::emit_small(MortonRange whole, Scratch& scratch) const {
+/// A range of equal codes.
+EmittedSubtree MortonEmitter::emit_equal(MortonRange whole, Scratch& scratch) const {
   if (whole.size() == 1) return leaf(whole.first);
   // All divisions in depth-first order; backwards, the two halves of a range are always the last two subtrees made.
   std::vector<Split>& splits = scratch.splits;
@@ -77,7 +85,7 @@ EmittedSubtree MortonEmitter::emit_small(MortonRange whole, Scratch& scratch) co
   while (!open.empty()) {
     const MortonRange range = open.back();
     open.pop_back();
-    const std::uint32_t m = middle(range);
+    const std::uint32_t m = range.first + range.size() / 2;
     splits.push_back({range, m});
     if (range.last - m > 1) open.push_back({m, range.last});
     if (m - range.first > 1) open.push_back({range.first, m});
@@ -94,6 +102,28 @@ EmittedSubtree MortonEmitter::emit_small(MortonRange whole, Scratch& scratch) co
     made.push_back(finish(splits[s], left, right));
   }
   return made.back();
+}
+
+/// From left to right: where codes differ in a lower bit than the next ones do, what lies on the two sides of that
+/// place belongs together. That is the tree that division from the top makes, without a search for each place.
+EmittedSubtree MortonEmitter::emit_small(MortonRange whole, Scratch& scratch) const {
+  const auto differs_lower = [](std::uint64_t a, std::uint64_t b) { return a < b && a < (a ^ b); };
+  std::vector<Scratch::Waiting>& waiting = scratch.waiting;
+  waiting.clear();
+  EmittedSubtree subtree;
+  for (std::uint32_t first = whole.first, last; first < whole.last; first = last) {
+    const std::uint64_t key = order_[first].key;
+    for (last = first + 1; last < whole.last && order_[last].key == key;) ++last;
+    subtree = emit_equal({first, last}, scratch);
+    const std::uint64_t step = last < whole.last ? key ^ order_[last].key : ~std::uint64_t{0};
+    std::uint32_t begin = first;
+    for (; !waiting.empty() && differs_lower(waiting.back().step, step); waiting.pop_back()) {
+      subtree = finish({{waiting.back().first, last}, begin}, waiting.back().subtree, subtree);
+      begin = waiting.back().first;
+    }
+    waiting.push_back({subtree, begin, step});
+  }
+  return subtree;
 }
 
 std::vector<EmittedSubtree> MortonEmitter::emit(std::span<const MortonRange> ranges, Executor& executor) const {

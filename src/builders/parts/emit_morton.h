@@ -51,6 +51,7 @@ class MortonEmitter {
   std::uint32_t middle(MortonRange range) const;
   EmittedSubtree leaf(std::uint32_t position) const;
   EmittedSubtree finish(const Split& split, const EmittedSubtree& left, const EmittedSubtree& right) const;
+  EmittedSubtree emit_equal(MortonRange range, Scratch& scratch) const;
   EmittedSubtree emit_small(MortonRange range, Scratch& scratch) const;
 
   std::span<const KeyedIndex> order_;
