@@ -25,18 +25,11 @@ struct MortonEmitter::Split {
   std::uint32_t middle;
 };
 
-/// What one small range after the other is worked on with.
-struct MortonEmitter::Scratch {
-  /// A subtree that may still get a right neighbour, and the bits in which its last code differs from the next one.
-  struct Waiting {
-    EmittedSubtree subtree;
-    std::uint32_t first;
-    std::uint64_t step;
-  };
-  std::vector<Waiting> waiting;
-  std::vector<Split> splits;
-  std::vector<MortonRange> open;
-  std::vector<EmittedSubtree> made;
+/// A subtree that may still get a right neighbour, and the bits in which its last code differs from the next one.
+struct MortonEmitter::Waiting {
+  EmittedSubtree subtree;
+  std::uint32_t first;
+  std::uint64_t step;
 };
 
 std::uint32_t MortonEmitter::middle(MortonRange range) const {
@@ -72,49 +65,24 @@ EmittedSubtree MortonEmitter::finish(const Split& split, const EmittedSubtree& l
   return {{box, 2 * split.middle - 1, 0}, inner_cost};
 }
 
-/// A range of equal codes.
-EmittedSubtree MortonEmitter::emit_equal(MortonRange whole, Scratch& scratch) const {
-  if (whole.size() == 1) return leaf(whole.first);
-  // All divisions in depth-first order; backwards, the two halves of a range are always the last two subtrees made.
-  std::vector<Split>& splits = scratch.splits;
-  std::vector<MortonRange>& open = scratch.open;
-  std::vector<EmittedSubtree>& made = scratch.made;
-  splits.clear();
-  open.assign(1, whole);
-  made.clear();
-  while (!open.empty()) {
-    const MortonRange range = open.back();
-    open.pop_back();
-    const std::uint32_t m = range.first + range.size() / 2;
-    splits.push_back({range, m});
-    if (range.last - m > 1) open.push_back({m, range.last});
-    if (m - range.first > 1) open.push_back({range.first, m});
-  }
-  const auto take = [&](MortonRange range) {
-    if (range.size() == 1) return leaf(range.first);
-    const EmittedSubtree subtree = made.back();
-    made.pop_back();
-    return subtree;
-  };
-  for (std::size_t s = splits.size(); s-- > 0;) {
-    const EmittedSubtree left = take({splits[s].range.first, splits[s].middle});
-    const EmittedSubtree right = take({splits[s].middle, splits[s].range.last});
-    made.push_back(finish(splits[s], left, right));
-  }
-  return made.back();
+/// A range of equal codes, halved and halved again: some twelve levels at most.
+EmittedSubtree MortonEmitter::emit_equal(MortonRange range) const {
+  if (range.size() == 1) return leaf(range.first);
+  const std::uint32_t m = range.first + range.size() / 2;
+  const EmittedSubtree left = emit_equal({range.first, m}), right = emit_equal({m, range.last});
+  return finish({range, m}, left, right);
 }
 
 /// From left to right: where codes differ in a lower bit than the next ones do, what lies on the two sides of that
 /// place belongs together. That is the tree that division from the top makes, without a search for each place.
-EmittedSubtree MortonEmitter::emit_small(MortonRange whole, Scratch& scratch) const {
+EmittedSubtree MortonEmitter::emit_small(MortonRange whole, std::vector<Waiting>& waiting) const {
   const auto differs_lower = [](std::uint64_t a, std::uint64_t b) { return a < b && a < (a ^ b); };
-  std::vector<Scratch::Waiting>& waiting = scratch.waiting;
   waiting.clear();
   EmittedSubtree subtree;
   for (std::uint32_t first = whole.first, last; first < whole.last; first = last) {
     const std::uint64_t key = order_[first].key;
     for (last = first + 1; last < whole.last && order_[last].key == key;) ++last;
-    subtree = emit_equal({first, last}, scratch);
+    subtree = emit_equal({first, last});
     const std::uint64_t step = last < whole.last ? key ^ order_[last].key : ~std::uint64_t{0};
     std::uint32_t begin = first;
     for (; !waiting.empty() && differs_lower(waiting.back().step, step); waiting.pop_back()) {
@@ -155,10 +123,10 @@ std::vector<EmittedSubtree> MortonEmitter::emit(std::span<const MortonRange> ran
   }
   std::vector<EmittedSubtree> task_roots(tasks.size());
   executor.for_chunks(pieces.size() - 1, 1, [&](std::size_t piece, std::size_t, std::size_t) {
-    Scratch scratch;
+    std::vector<Waiting> waiting;
     for (std::size_t t = pieces[piece]; t < pieces[piece + 1]; ++t) {
       if (cancel_ && cancel_->load(std::memory_order_relaxed)) return;
-      task_roots[t] = emit_small(tasks[t], scratch);
+      task_roots[t] = emit_small(tasks[t], waiting);
     }
   });
 

@@ -47,12 +47,12 @@ class MortonEmitter {
 
  private:
   struct Split;
-  struct Scratch;
+  struct Waiting;
   std::uint32_t middle(MortonRange range) const;
   EmittedSubtree leaf(std::uint32_t position) const;
   EmittedSubtree finish(const Split& split, const EmittedSubtree& left, const EmittedSubtree& right) const;
-  EmittedSubtree emit_equal(MortonRange range, Scratch& scratch) const;
-  EmittedSubtree emit_small(MortonRange range, Scratch& scratch) const;
+  EmittedSubtree emit_equal(MortonRange range) const;
+  EmittedSubtree emit_small(MortonRange range, std::vector<Waiting>& waiting) const;
 
   std::span<const KeyedIndex> order_;
   std::span<const refs::Reference> references_;
