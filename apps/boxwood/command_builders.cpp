@@ -65,6 +65,7 @@ std::string stands_for(const QualityLevel& level) {
   std::string text = level.builder;
   if (std::string_view(level.presplit) != "none") text = std::string(level.presplit) + " + " + text;
   if (std::string_view(level.optimizer) != "none") text += std::string(" + ") + level.optimizer;
+  if (level.second_builder) text += std::string(", or the same over ") + level.second_builder;
   return text;
 }
 

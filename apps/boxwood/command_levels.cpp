@@ -24,6 +24,7 @@ Json level_json(const QualityLevel& level) {
   json["settings"] = Json::object();
   for (const auto& [key, value] : level.settings) json["settings"][key] = value;
   json["optimizer"] = level.optimizer;
+  json["second_builder"] = level.second_builder ? Json(level.second_builder) : Json(nullptr);
   json["build_cost"] = level.build_cost;
   json["memory"] = level.memory;
   return json;
@@ -38,6 +39,9 @@ Status run_levels(const CommonOptions& options) {
     std::string stands_for = std::string("--builder ") + level.builder;
     for (const auto& [key, value] : level.settings) stands_for += fmt::format(" --set {}={}", key, value);
     session.result("    {} --presplit {} --optimizer {}\n", stands_for, level.presplit, level.optimizer);
+    if (level.second_builder)
+      session.result("    or --builder {}, whose triangles stay whole, where that costs at most {} times as much\n",
+                     level.second_builder, kSecondTreeAllowance);
     session.result("    build time against balanced: {}; memory: {}\n", level.build_cost, level.memory);
     report.push_back(level_json(level));
   }

@@ -25,8 +25,9 @@ struct QualityLevel {
   const char* builder;
   std::span<const std::pair<const char*, const char*>> settings;  ///< of the builder, key and value
   const char* optimizer;
-  const char* build_cost;  ///< build time against `balanced`, as measured (docs/best-tree.md)
-  const char* memory;      ///< of the finished Accel, likewise
+  const char* second_builder;  ///< of a second tree, over whole triangles: see TreePlan; null: there is none
+  const char* build_cost;      ///< build time against `balanced`, as measured (docs/best-tree.md)
+  const char* memory;          ///< of the finished Accel, likewise
 };
 
 /// All levels, from the quickest to build to the fastest to trace.
@@ -34,17 +35,26 @@ std::span<const QualityLevel> quality_levels();
 /// The level of an id, or null.
 const QualityLevel* find_quality_level(std::string_view id);
 
+/// See TreePlan::second.
+inline constexpr double kSecondTreeAllowance = 1.025;
+
 /// What makes a binary tree, with all options checked. Made by plan_tree.
 struct TreePlan {
   const QualityLevel* level = nullptr;  ///< that was named; null: a builder was
   builders::BuildOptions build;         ///< the builder itself, with the level's settings
+  /// Builder of a second tree from the same references, bettered by the same optimizer; empty: there is none. It is for
+  /// builders that split references: the tree that leaves them whole is kept where it costs at most
+  /// kSecondTreeAllowance times as much, since rays that end at a hit pass fewer nodes in it than their boxes' areas
+  /// say.
+  builders::BuildOptions second = {.builder = {}, .settings = {}};
   refs::Presplit presplit;
   optimizers::Optimizer optimizer;
   /// Prices to compare trees by: those that were asked for, else the builder's defaults. What a level sets for its
   /// builder is not among them, or Exp(T) of two levels would be in different units.
   tree::CostModel cost;
 
-  /// Key and value as text of all that was resolved: level (if any), builder, pre-split, optimizer, settings.
+  /// Key and value as text of all that was resolved: level (if any), builder, pre-split, optimizer, second builder (if
+  /// any), settings.
   std::vector<std::pair<std::string, std::string>> echo() const;
 };
 
@@ -59,13 +69,16 @@ struct TreeReport {
   std::size_t excluded = 0;  ///< non-finite triangles left out
   refs::PresplitReport presplit;
   double reference_seconds = 0, presplit_seconds = 0, builder_seconds = 0, optimizer_seconds = 0;
+  /// Expected cost of the second tree by that of the first, in the plan's prices; 0: there was none.
+  double second_tree_cost = 0;
 
+  bool kept_second_tree() const { return second_tree_cost > 0 && second_tree_cost <= kSecondTreeAllowance; }
   double seconds() const { return reference_seconds + presplit_seconds + builder_seconds + optimizer_seconds; }
 };
 
-/// References of the mesh, their pre-split, the builder, the optimizer: what Accel::build does before it encodes.
-/// `split`, if any, gets a 1 for each primitive that has several references, by the pre-split or by the builder, and a
-/// 0 for the others. The same bits for every executor. Errors: what these steps refuse.
+/// References of the mesh, their pre-split, the builder, the optimizer, perhaps a second tree: what Accel::build does
+/// before it encodes. `split`, if any, gets a 1 for each primitive that has several references, by the pre-split or by
+/// the builder, and a 0 for the others. The same bits for every executor. Errors: what these steps refuse.
 Result<tree::BinaryTree> build_tree(const MeshView& mesh, const TreePlan& plan, const builders::BuildContext& context,
                                     TreeReport* report = nullptr, std::vector<std::uint32_t>* split = nullptr);
 

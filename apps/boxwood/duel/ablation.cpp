@@ -41,12 +41,23 @@ bool leave_out_spatial_splits(AccelOptions& options) {
   return plan && plan->build.builder == "sbvh" && differs(options.build.settings["alpha"], "1");
 }
 
+/// What the level stands for but for its second tree.
+bool leave_out_second_tree(AccelOptions& options) {
+  const auto plan = plan_tree(options.build, options.presplit, options.optimizer);
+  if (!plan || plan->second.builder.empty()) return false;
+  options.build = plan->build;
+  options.presplit = plan->presplit.text();
+  options.optimizer = plan->optimizer.text();
+  return true;
+}
+
 const std::vector<Technique>& techniques() {
   const auto nothing = [](AccelOptions&) { return true; };
   static const std::vector<Technique> list{
       {"pre-split", leave_out_presplit},
       {"spatial splits", leave_out_spatial_splits},
       {"reinsertion", leave_out_optimizer},
+      {"a second tree of whole triangles", leave_out_second_tree},
       {"sixteen children a node", [](AccelOptions& o) { return o.layout == "wide16" && differs(o.layout, "wide8"); }},
       {"eight children a node", [](AccelOptions& o) { return o.layout == "wide8" && differs(o.layout, "wide4"); }},
       {"quads",
