@@ -36,7 +36,7 @@ Result<layouts::Layout> encode_tree(layouts::LayoutId id, const tree::BinaryTree
   const bool quads = layouts::has_quads(id);
   if (quads) {
     // Pricing looks at the triangles, before the encoder could find one that is not there.
-    if (auto status = layouts::check_references(tree.references.span(), mesh); !status) return status.error();
+    if (auto status = layouts::check_references(tree.references.span(), mesh, executor); !status) return status.error();
     // Both triangles of a block's four quads are tested in one go, or nearly.
     options.block = 8;
     options.leaf_blocks = [&](std::span<const std::uint32_t> references) {

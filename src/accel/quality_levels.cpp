@@ -11,7 +11,7 @@ using Setting = std::pair<const char*, const char*>;
 /// A wide layout tests four triangles at once, so a subtree of a few is hardly ever worth its nodes: with these prices
 /// the builder stops there, where the collapse would make a leaf anyway, and pairs need not be told apart before
 /// (docs/best-tree.md).
-constexpr Setting kFastSettings[] = {{"cost.intersection", "0.35"}, {"merge.most", "2"}};
+constexpr Setting kFastSettings[] = {{"cost.intersection", "0.35"}, {"merge.most", "2"}, {"treelet.bits", "12"}};
 constexpr Setting kBalancedSettings[] = {{"cost.intersection", "0.5"}, {"merge.most", "2"}};
 
 /// Planes where the sides overlap by less than a thousandth of the root's area cost the builder two fifths of its time
@@ -26,7 +26,7 @@ constexpr QualityLevel kLevels[] = {
      .settings = kFastSettings,
      .optimizer = "none",
      .second_builder = nullptr,
-     .build_cost = "0.8 on one thread, 1 on two",
+     .build_cost = "0.7 on one thread, 0.85 on two",
      .memory = "0.9 to 1.1 times balanced"},
     {.id = "balanced",
      .summary = "the default: quick to build, good to trace",
@@ -44,8 +44,8 @@ constexpr QualityLevel kLevels[] = {
      .settings = kBestSettings,
      .optimizer = "reinsertion",
      .second_builder = "sweep-sah",
-     .build_cost = "8 to 15",
-     .memory = "up to 1.4 times balanced"},
+     .build_cost = "8 to 19",
+     .memory = "1.05 to 1.2 times balanced"},
 };
 
 std::string known_levels() {

@@ -19,6 +19,6 @@ auto guard_memory(F&& f) -> decltype(f()) {
 }
 
 /// Every reference must be a triangle of the mesh with corners inside its vertices.
-Status check_references(std::span<const std::uint32_t> references, const MeshView& mesh);
+Status check_references(std::span<const std::uint32_t> references, const MeshView& mesh, Executor& executor);
 
 }  // namespace boxwood::layouts

@@ -34,7 +34,7 @@ Result<Layout> encode_linear(const tree::BinaryTree& tree, const MeshView& mesh,
     if (tree.references.size() >= 1u << 30)
       return {ErrorCode::too_large, "the linear layout holds at most 2^30 - 1 references, the tree has " +
                                         std::to_string(tree.references.size())};
-    if (auto status = check_references(tree.references.span(), mesh); !status) return status.error();
+    if (auto status = check_references(tree.references.span(), mesh, executor); !status) return status.error();
     layout.root = 0;
     layout.bounds = tree.bounds();
     layout.node_count = tree.nodes.size();

@@ -149,7 +149,7 @@ Result<Layout> encode(LayoutId id, const tree::WideTree& tree, const MeshView& m
     Layout layout;
     layout.id = id;
     if (tree.children.empty()) return layout;
-    if (auto status = check_references(tree.references, mesh); !status) return status.error();
+    if (auto status = check_references(tree.references, mesh, executor); !status) return status.error();
     layout.bounds = tree.bounds;
     layout.max_stack = tree.max_stack;
     layout.node_count = tree.first_child.size() - 1;
