@@ -114,7 +114,7 @@ std::vector<std::pair<std::string, std::string>> TreePlan::echo() const {
   echo.emplace_back("builder", build.builder);
   echo.emplace_back("presplit", presplit.text());
   echo.emplace_back("optimizer", optimizer.text());
-  if (!second.builder.empty()) echo.emplace_back("second builder", second.builder);
+  if (!second.builder.empty()) echo.emplace_back("second_builder", second.builder);
   if (const auto resolved = builders::resolve_options(build.builder, build.settings))
     for (auto& entry : resolved->echo()) echo.push_back(std::move(entry));
   return echo;
