@@ -35,9 +35,9 @@ ReportTable target_table(const std::vector<Cell>& all, const std::vector<Summary
     report.table.row(std::move(cells));
   }
   report.notes.emplace_back(
-      "rounds: lowest and highest of the same mean over one round each; worst: a single cell. Single calls in fast "
-      "mode "
-      "and for any hit are reached only if no scene's mean is under 1. Embree is the faster of MEDIUM and HIGH in each "
+      "rounds: lowest and highest of the same mean over one round each; worst: a single cell. Single calls in "
+      "fast mode and for any hit are reached only if no scene's mean is under 1. Embree is the faster of MEDIUM and "
+      "HIGH in each "
       "cell. Bytes: less is better.");
   std::size_t repeated = 0, disturbed = 0;
   for (const Cell& cell : all) repeated += cell.repeated, disturbed += cell.disturbed;
