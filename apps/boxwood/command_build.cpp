@@ -28,6 +28,7 @@ struct BuildOptions {
 
 /// All that is reported of one build.
 struct Outcome {
+  std::string built_by;  ///< builder whose tree was kept
   tree::BinaryTree tree;
   TreeReport built;
   double encode_seconds = 0, validate_seconds = 0;
@@ -63,6 +64,7 @@ Result<Outcome> build_and_measure(const BuildOptions& options, const TreePlan& p
       input.mesh, plan, {*session.executor(), [&](double share) { progress.update(share); }, nullptr}, &outcome.built);
   if (!built) return built.error();
   outcome.tree = std::move(*built);
+  outcome.built_by = outcome.built.kept_second_tree() ? plan.second.builder : plan.build.builder;
   const tree::BinaryTree& tree = outcome.tree;
   progress.update(-1);
   progress.label("encoding " + options.pipeline.layout);
@@ -112,6 +114,7 @@ Json build_json(const BuildOptions& options, const Session& session, const Input
   report["mesh"] = input.json();
   report["options"] = options_json(echo);
   report["builder"] = options.pipeline.builder;
+  report["built_by"] = outcome.built_by;
   report["layout"] = options.pipeline.layout;
   report["presplit"] = presplit_json(echo, outcome.built.presplit);
   report["surface_area_cost"] = outcome.cost;
@@ -184,6 +187,9 @@ void print_build(const BuildOptions& options, const Session& session, const Outc
                             1e3 * outcome.built.optimizer_seconds, 1e3 * outcome.encode_seconds,
                             1e-6 * triangles / outcome.build_seconds()));
   if (outcome.built.presplit.splits > 0) print_presplit(line, outcome.built.presplit);
+  if (outcome.built.second_tree_cost > 0)
+    line("kept", fmt::format("the tree of {}; whole triangles cost {:.3f} times as much as split ones",
+                             outcome.built_by, outcome.built.second_tree_cost));
   line("Exp(T)", fmt::format("{:.4f}", outcome.cost));
   line("nodes", fmt::format("{}, {} of them leaves", with_thousands(shape.nodes), with_thousands(shape.leaves)));
   line("references", with_thousands(shape.references));

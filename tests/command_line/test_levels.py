@@ -24,6 +24,7 @@ class Levels(CommandLineTest):
                     ratio = second["surface_area_cost"] / spelt["surface_area_cost"]
                     self.assertAlmostEqual(named["notes"]["cost of whole triangles by that of split ones"], ratio)
                     kept = second["hash"] if ratio <= 1.025 else kept
+                    self.assertEqual(named["built_by"], level["second_builder" if ratio <= 1.025 else "builder"])
                     self.assertEqual(named["options"].pop("second_builder"), level["second_builder"])
                 self.assertEqual(named["hash"], kept)
                 self.assertTrue(named["valid"])
