@@ -59,7 +59,7 @@ format-check:  ## fail when a source is not in the project's format
 	@$(SOURCES) | xargs clang-format --dry-run --Werror
 
 tidy: dependencies  ## clang-tidy over src and apps
-	$(call CONFIGURE,$(PRESET)) -B build/tidy -DBOXWOOD_PRECOMPILE=OFF
+	$(call CONFIGURE,$(PRESET)) -B build/tidy -DBOXWOOD_PRECOMPILE=OFF -DBOXWOOD_UNITY=OFF
 	tools/run_tidy.sh build/tidy $(JOBS)
 
 asan tsan clang: dependencies  ## build and run the tests under a sanitizer; clang: under asan's, by clang++, warnings are errors

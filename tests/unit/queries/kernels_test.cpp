@@ -112,7 +112,7 @@ TEST(Kernels, AllVariantsGiveTheSameBits) {
 TEST(Kernels, RaysFromSurfacesDoNotDependOnTheBuilder) {
   const auto scene = mesh::make_scene("atrium", {.triangles = 20000});
   ASSERT_TRUE(scene);
-  const int size = static_cast<int>(test::effort(300, 4));
+  const int size = static_cast<int>(test::effort(300, 8));
   const auto primary = render::primary_rays(scene->view, size, size);
   ASSERT_TRUE(primary);
   const auto rays = render::diffuse_rays(make(scene->mesh, {"wide8", {}}), *primary, 1);
