@@ -87,9 +87,9 @@ struct AccelOptions {
   std::string presplit = {};   ///< how to split references first: what refs::parse_presplit reads; empty: the level's
   std::string optimizer = {};  ///< how to better the tree: what optimizers::parse_optimizer reads; empty: the level's
   std::string layout = {};     ///< id of layouts::registry; empty: queries::default_layout
-  /// Wide layouts: what visiting a node costs against testing one block of triangles, > 0, and the most blocks of a
-  /// leaf, 1 to 8 (docs/collapse.md). `linear` has no use for them.
-  float node_cost = 2;
+  /// Wide layouts: what visiting a node costs against testing one block of triangles, above 0 (0: the layout's own,
+  /// layouts::node_cost), and the most blocks of a leaf, 1 to 8 (docs/collapse.md). `linear` has no use for them.
+  float node_cost = 0;
   int max_leaf_blocks = 4;
   std::string isa = {};  ///< empty = environment variable BOXWOOD_ISA, or the best the processor has
   /// Runs the build and later the batch queries. Null = a pool of its own over all processors.
@@ -112,15 +112,15 @@ struct OptimizeOptions {
   int passes = 3;  ///< over all treelets, 0 to 100 (0: only collapse and order); ends early when nothing changes
   /// Rays, at each node, that go as the surface area says: above 0, to 1e6. Many keep the tree closer to one for all
   /// kinds of rays, few trust the sample.
-  float prior = 32;
+  float prior = 128;
   std::size_t most_rays = std::size_t{1} << 17;  ///< looked at, of each question, evenly spaced; at least 4
   std::string layout = {};                       ///< empty: as it is
-  /// As for AccelOptions; a node visit is dearer here, since measured visits are fewer than areas make them.
-  float node_cost = 2.5f;
+  float node_cost = 0;                           ///< as for AccelOptions
   int max_leaf_blocks = 4;
 };
 
-/// What Accel::optimize did. Work is per held-out ray, in tests of one leaf block (a node visit is 1.5).
+/// What Accel::optimize did. Work is per held-out ray, in tests of one leaf block; a node visit is queries::kNodePrice
+/// of them.
 struct OptimizeReport {
   std::size_t trained_rays = 0;
   std::size_t tested_rays = 0;  ///< held out: every fourth, seen by no decision but whether to take the new tree

@@ -21,12 +21,16 @@ struct LayoutInfo {
   LayoutId id;
   const char* name;     ///< "wide8"
   const char* summary;  ///< one line that ends with what it is best for
+  /// What visiting a node costs against testing one block of a leaf, as measured (docs/collapse.md).
+  float node_cost;
 };
 std::span<const LayoutInfo> registry();
 Result<LayoutId> find(std::string_view name);
 const char* name(LayoutId id);
 /// Children a node may have: 2 for `linear`.
 int width(LayoutId id);
+/// LayoutInfo::node_cost.
+float node_cost(LayoutId id);
 /// Leaves are blocks of quads, not of triangles.
 bool has_quads(LayoutId id);
 

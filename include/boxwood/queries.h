@@ -112,7 +112,7 @@ Result<TraversalKernels> select_traversal(layouts::LayoutId layout, Mode mode, c
 Status check_traversal(layouts::LayoutId layout, const TraversalOptions& options);
 
 /// Prices of VisitCounts: opening a node and testing one block of a leaf.
-inline constexpr std::uint64_t kNodePrice = 3, kBlockPrice = 2;
+inline constexpr std::uint64_t kNodePrice = 4, kBlockPrice = 1;
 
 /// What rays do in a wide layout, child by child.
 struct VisitCounts {

@@ -135,7 +135,7 @@ Result<Accel> Accel::from_tree(const MeshView& mesh, const tree::BinaryTree& tre
     if (!robust) return robust.error();
     if (!fast) return fast.error();
     optimizers::CollapseOptions collapse;
-    collapse.node_cost = options.node_cost;
+    collapse.node_cost = options.node_cost == 0 ? layouts::node_cost(*id) : options.node_cost;
     collapse.max_leaf_blocks = options.max_leaf_blocks;
     auto layout = encode_tree(*id, tree, mesh, std::move(collapse), *state->executor);
     if (!layout) return layout.error();

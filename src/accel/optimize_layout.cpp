@@ -209,7 +209,7 @@ Result<OptimizedLayout> optimize_layout(const Accel& accel, const RaySample& sam
   const auto weights = optimizers::node_visits(*tree, trained.cut, options.prior, executor);
   if (!weights) return weights.error();
   optimizers::CollapseOptions collapse;
-  collapse.node_cost = options.node_cost;
+  collapse.node_cost = options.node_cost == 0 ? layouts::node_cost(id) : options.node_cost;
   collapse.max_leaf_blocks = options.max_leaf_blocks;
   collapse.node_weights = *weights;
   auto after = encode_tree(id, *tree, decoded->mesh(), std::move(collapse), executor);

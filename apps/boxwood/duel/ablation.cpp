@@ -51,6 +51,15 @@ bool leave_out_second_tree(AccelOptions& options) {
   return true;
 }
 
+/// The price that was right for nothing in particular.
+bool leave_out_node_price(AccelOptions& options) {
+  constexpr float kForAll = 2;
+  const auto id = layouts::find(options.layout);
+  if (!id || *id == layouts::LayoutId::linear || layouts::node_cost(*id) == kForAll) return false;
+  options.node_cost = kForAll;
+  return true;
+}
+
 const std::vector<Technique>& techniques() {
   const auto nothing = [](AccelOptions&) { return true; };
   static const std::vector<Technique> list{
@@ -64,6 +73,7 @@ const std::vector<Technique>& techniques() {
        [](AccelOptions& o) {
          return o.layout.ends_with("-quads") && differs(o.layout, o.layout.substr(0, o.layout.size() - 6).c_str());
        }},
+      {"the layout's node price (2 blocks instead)", leave_out_node_price},
       {"wide nodes and blocks", [](AccelOptions& o) { return differs(o.layout, "linear"); }},
       {"huge pages", nothing, false},
       {"fast mode (robust instead)", nothing, true, queries::Mode::robust},
