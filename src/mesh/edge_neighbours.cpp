@@ -2,7 +2,8 @@
 // vertex there are few, which are sorted by the other vertex and triangle and partnered two by two. The triangles are
 // cut into parts, one for each thread, with counters of their own: into how many does not matter, since each vertex's
 // sides are sorted after all. (One set of counters with atomic additions made two threads slower than one; lists of
-// sides that wait for their partner took a sixth longer than counting.) Expected O(n).
+// sides that wait for their partner took a sixth longer than counting, hash tables of them for each 16,384
+// triangles more than half as long again.) Expected O(n).
 #include <algorithm>
 #include <utility>
 
