@@ -281,7 +281,7 @@ TEST(Render, SameBitsOnEveryExecutor) {
   TriangleMesh mesh = icosphere(3);
   add_quad(mesh, {-3, -3, -1}, {6, 0, 0}, {0, 6, 0});
   const View view{.eye = {2, 2, 3}, .look_at = {0, 0, 0}, .fov = 50};
-  const int width = static_cast<int>(test::effort(320, 2)), height = 3 * width / 4;
+  const int width = 320, height = 240;
   for (const Shade shade : kAllShades) {
     const Image reference = picture(build(mesh, std::make_shared<SequentialExecutor>()), view, width, height, shade);
     EXPECT_GT(colors(reference).size(), 20u);
