@@ -51,7 +51,7 @@ bool leave_out_second_tree(AccelOptions& options) {
   return true;
 }
 
-/// The price that was right for nothing in particular.
+/// One price for all layouts instead of each its own.
 bool leave_out_node_price(AccelOptions& options) {
   constexpr float kForAll = 2;
   const auto id = layouts::find(options.layout);

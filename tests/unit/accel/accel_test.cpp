@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <thread>
+#include <utility>
 
 #include "support/meshes.h"
 
@@ -63,6 +64,27 @@ TEST(Accel, ErrorsNameTheValue) {
   ASSERT_FALSE(accel);
   EXPECT_NE(accel.error().message.find("4000"), std::string::npos) << accel.error().message;
   EXPECT_NE(accel.error().message.find("7"), std::string::npos) << accel.error().message;
+}
+
+TEST(Accel, NodesHaveTheLayoutsPriceUnlessGivenAnother) {
+  const TriangleMesh mesh = test::soup(2000, 3);
+  const auto nodes = [&](const char* layout, float price) {
+    const auto accel = Accel::build(mesh, {.layout = layout, .node_cost = price});
+    EXPECT_TRUE(accel) << layout << " " << price;
+    return std::pair(accel->layout().node_count, accel->layout().leaf_count);
+  };
+  for (const layouts::LayoutInfo& layout : layouts::registry()) {
+    if (layout.id == layouts::LayoutId::linear) continue;
+    EXPECT_EQ(layouts::node_cost(layout.id), layout.node_cost);
+    EXPECT_EQ(nodes(layout.name, 0), nodes(layout.name, layout.node_cost)) << layout.name;
+    EXPECT_LT(nodes(layout.name, 0), nodes(layout.name, layout.node_cost - 1)) << layout.name;
+    EXPECT_GT(nodes(layout.name, 0), nodes(layout.name, layout.node_cost + 1)) << layout.name;
+  }
+  for (const float price : {-1.0f, std::nanf(""), kInfinity}) {
+    const auto refused = Accel::build(mesh, {.layout = "wide8", .node_cost = price});
+    ASSERT_FALSE(refused) << price;
+    EXPECT_NE(refused.error().message.find("node_cost is " + std::to_string(price)), std::string::npos);
+  }
 }
 
 TEST(Accel, EnvironmentVariableForcesTheInstructionSet) {
