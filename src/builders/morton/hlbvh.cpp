@@ -58,18 +58,19 @@ Result<tree::BinaryTree> build_hlbvh(refs::ReferenceSet&& set, const OptionValue
   monitor.finish(2);
   if (monitor.cancelled()) return cancelled_error();
 
-  AlignedBuffer<tree::Node> nodes(2 * order.size());
-  const MortonEmitter emitter(order.span(), set.references.span(), leaves(options), nodes.span(), context.cancel);
+  MortonEmitter emitter(order.span(), set.references.span(), leaves(options), context.cancel);
   const auto ranges = treelet_ranges(order.span(), 3 * axis_bits - int(options.integer("treelet.bits")));
-  const auto treelets = emitter.emit(ranges, context.executor);
+  std::vector<tree::TopNode> top(1);
+  const auto treelets = emitter.emit(ranges, top, context.executor);
   if (monitor.cancelled()) return cancelled_error();
-  if (!join_treelets(ranges, treelets, options, context, nodes.span())) return cancelled_error();
+  const auto root = join_treelets(treelets, options, context, top);
+  if (!root) return cancelled_error();
   monitor.finish(1);
 
-  const auto primitives = sorted_primitives(order.span(), set.references.span(), context.executor);
-  order = {};  // not needed any more, and the canonical copy needs the memory
+  order = {};  // not needed any more, and the tree needs the memory
   set.references = {};
-  auto tree = tree::canonicalize(nodes.span(), primitives.span(), set.primitive_count, false, context.executor);
+  auto tree =
+      tree::join_pieces(top, *root, emitter.slots(), emitter.primitives(), set.primitive_count, context.executor);
   monitor.finish(1);
   return tree;
 }

@@ -22,17 +22,17 @@ Result<tree::BinaryTree> build_lbvh(refs::ReferenceSet&& set, const OptionValues
   monitor.finish(2);
   if (monitor.cancelled()) return cancelled_error();
 
-  AlignedBuffer<tree::Node> nodes(2 * std::size_t(count));
-  const MortonEmitter emitter(order.span(), set.references.span(), leaves(options), nodes.span(), context.cancel);
+  MortonEmitter emitter(order.span(), set.references.span(), leaves(options), context.cancel);
   const MortonRange all{0, count};
-  nodes[0] = emitter.emit({&all, 1}, context.executor)[0].root;
+  std::vector<tree::TopNode> top(1);
+  const std::uint32_t root = emitter.emit({&all, 1}, top, context.executor)[0];
   monitor.finish(1);
   if (monitor.cancelled()) return cancelled_error();
 
-  const auto primitives = sorted_primitives(order.span(), set.references.span(), context.executor);
-  order = {};  // not needed any more, and the canonical copy needs the memory
+  order = {};  // not needed any more, and the tree needs the memory
   set.references = {};
-  auto tree = tree::canonicalize(nodes.span(), primitives.span(), set.primitive_count, false, context.executor);
+  auto tree =
+      tree::join_pieces(top, root, emitter.slots(), emitter.primitives(), set.primitive_count, context.executor);
   monitor.finish(1);
   return tree;
 }

@@ -2,8 +2,13 @@
 // range is divided where the highest bit that is not the same in all its codes changes; a range of equal codes is
 // divided in the middle. So the depth is at most 63 plus the logarithm of the largest number of equal codes. Unlike
 // Karras' tree, which gives every node a thread, ranges are divided from the top, by bisection, until they are small;
-// the small ones are the parallel tasks, each made from left to right in linear time. How it is cut depends on the
+// the small ones are the parallel tasks, each made in one go in linear time. How it is cut depends on the
 // ranges only, so all thread counts give equal bits.
+//
+// A small range is made from its last reference to its first. A node is finished when both of its children are, the
+// right one first; so when each pair of children is written in front of the pairs before it, a subtree stands in
+// preorder, left before right, which is canonical order, and nothing has to be put in order afterwards. Pairs whose
+// node became a leaf are those written last.
 //
 // Boxes and prices are made on the way back up. Unlike in the papers, where leaves are single references or what is
 // left when the bits end, a range within the limit becomes a leaf where that is no dearer by the surface area
@@ -12,24 +17,152 @@
 
 #include <bit>
 
+#include "builders/parts/float4.h"
+
 namespace boxwood::builders {
 namespace {
 
 constexpr std::uint32_t kTaskSize = 4096;
+/// References are read in sorted order, so the next ones can be asked for in time.
+constexpr std::uint32_t kAhead = 16;
+
+double area(const Box4& box) {
+  return double(half_area(box.upper - box.lower));
+}
+
+Box4 merge(const Box4& a, const Box4& b) {
+  return {minimum(a.lower, b.lower), maximum(a.upper, b.upper)};
+}
 
 }  // namespace
 
-/// A range and the position that divides it; 0 stands for "not divided, a task of its own".
+/// The top node of a range, the position that divides it, and the number of its left child; position 0: not divided, a
+/// task of its own.
 struct MortonEmitter::Split {
   MortonRange range;
   std::uint32_t middle;
+  std::uint32_t node;
 };
 
-/// A subtree that may still get a right neighbour, and the bits in which its last code differs from the next one.
-struct MortonEmitter::Waiting {
-  EmittedSubtree subtree;
-  std::uint32_t first;
-  std::uint64_t step;
+/// A subtree whose root has no place yet, with its price: the sum over its nodes of area times cost.
+struct MortonEmitter::Subtree {
+  Box4 box;  ///< fourth lanes are zero
+  double cost;
+  std::uint32_t first;  ///< a leaf's position, or the slot of its children
+  std::uint32_t count;  ///< references of a leaf, 0: not a leaf
+  std::uint32_t inner;
+
+  void store(tree::Node& node) const {
+    box.lower.store_anywhere(&node.bounds.lower.x);
+    alignas(16) float upper[4];
+    box.upper.store(upper);
+    node.bounds.upper = {upper[0], upper[1], upper[2]};
+    node.first = first;
+    node.count = count;
+  }
+};
+
+/// Makes the subtree of one small range.
+struct MortonEmitter::Writer {
+  /// A subtree that may still get a left neighbour, and the bits in which its first code differs from the one before.
+  struct Waiting {
+    Subtree subtree;
+    std::uint32_t last;
+    std::uint64_t step;
+  };
+
+  explicit Writer(MortonEmitter& emitter)
+      : order(emitter.order_),
+        references(emitter.references_),
+        largest_leaf(emitter.leaves_.largest == 0 ? ~std::uint32_t{0} : emitter.leaves_.largest),
+        traversal(double(emitter.leaves_.cost.traversal)),
+        intersection(double(emitter.leaves_.cost.intersection)),
+        slots(emitter.slots_.data()),
+        primitives(emitter.primitives_.data()) {}
+
+  Subtree leaf(std::uint32_t position) const {
+    const refs::Reference& reference = references[order[position].index];
+    primitives[position] = reference.primitive;
+    Box4 box = Box4::of(reference);
+    box.lower = box.lower & mask;
+    return {box, area(box) * intersection, position, 1, 0};
+  }
+
+  /// The leaf over the positions from `first` on, if it is no dearer than its subtree.
+  bool becomes_leaf(std::uint32_t first, std::uint32_t count, Subtree& whole) const {
+    if (count > largest_leaf) return false;
+    const double leaf_cost = area(whole.box) * intersection * double(count);
+    if (!(leaf_cost <= whole.cost)) return false;
+    whole.cost = leaf_cost;
+    whole.first = first;
+    whole.count = count;
+    whole.inner = 0;
+    return true;
+  }
+
+  Subtree over(const Subtree& left, const Subtree& right) const {
+    Subtree whole;
+    whole.box = merge(left.box, right.box);
+    whole.cost = area(whole.box) * traversal + left.cost + right.cost;
+    whole.count = 0;
+    whole.inner = left.inner + right.inner + 1;
+    return whole;
+  }
+
+  /// The parent of two subtrees over [first, last), the ones made last.
+  Subtree finish(std::uint32_t first, std::uint32_t last, const Subtree& left, const Subtree& right) {
+    Subtree whole = over(left, right);
+    if (becomes_leaf(first, last - first, whole)) {
+      next += 2 * (left.inner + right.inner);
+      return whole;
+    }
+    next -= 2;
+    left.store(slots[next]);
+    right.store(slots[next + 1]);
+    whole.first = next;
+    return whole;
+  }
+
+  /// A range of equal codes, halved and halved again: some twelve levels at most.
+  Subtree make_equal(MortonRange range) {
+    if (range.size() == 1) return leaf(range.first);
+    const std::uint32_t middle = range.first + range.size() / 2;
+    const Subtree right = make_equal({middle, range.last});
+    return finish(range.first, range.last, make_equal({range.first, middle}), right);
+  }
+
+  /// From right to left: where codes differ in a lower bit than the ones before do, what lies on the two sides of that
+  /// place belongs together. That is the tree that division from the top makes, without a search for each place.
+  Subtree make(MortonRange whole) {
+    const auto differs_lower = [](std::uint64_t a, std::uint64_t b) { return a < b && a < (a ^ b); };
+    next = 2 * whole.last;
+    waiting.clear();
+    Subtree subtree;
+    for (std::uint32_t last = whole.last, first; last > whole.first; last = first) {
+      const std::uint64_t key = order[last - 1].key;
+      for (first = last - 1; first > whole.first && order[first - 1].key == key;) --first;
+      if (first >= whole.first + kAhead) prefetch(&references[order[first - kAhead].index]);
+      subtree = make_equal({first, last});
+      const std::uint64_t step = first > whole.first ? key ^ order[first - 1].key : ~std::uint64_t{0};
+      std::uint32_t end = last;
+      for (; !waiting.empty() && differs_lower(waiting.back().step, step); waiting.pop_back()) {
+        end = waiting.back().last;
+        subtree = finish(first, end, subtree, waiting.back().subtree);
+      }
+      waiting.push_back({subtree, end, step});
+    }
+    return subtree;
+  }
+
+  std::span<const KeyedIndex> order;
+  std::span<const refs::Reference> references;
+  std::uint32_t largest_leaf;
+  double traversal, intersection;
+  tree::Node* slots;
+  std::uint32_t* primitives;
+  Float4 mask = xyz_mask();
+  std::uint32_t next = 0;  ///< slots from here on to the range's end are taken
+  std::vector<Waiting> waiting;
 };
 
 std::uint32_t MortonEmitter::middle(MortonRange range) const {
@@ -44,108 +177,70 @@ std::uint32_t MortonEmitter::middle(MortonRange range) const {
   return one;
 }
 
-EmittedSubtree MortonEmitter::leaf(std::uint32_t position) const {
-  const Box box = references_[order_[position].index].box();
-  return {{box, position, 1}, double(box.half_area()) * double(leaves_.cost.intersection)};
-}
-
-EmittedSubtree MortonEmitter::finish(const Split& split, const EmittedSubtree& left,
-                                     const EmittedSubtree& right) const {
-  const Box box = merge(left.root.bounds, right.root.bounds);
-  const std::uint32_t count = split.range.size();
-  const double area = double(box.half_area());
-  const double inner_cost = area * double(leaves_.cost.traversal) + left.cost + right.cost;
-  if (leaves_.largest == 0 || count <= leaves_.largest) {
-    const double leaf_cost = area * double(leaves_.cost.intersection) * double(count);
-    if (leaf_cost <= inner_cost) return {{box, split.range.first, count}, leaf_cost};
-  }
-  // Children of what became a leaf never touch the nodes' memory.
-  nodes_[2 * std::size_t(split.middle) - 1] = left.root;
-  nodes_[2 * std::size_t(split.middle)] = right.root;
-  return {{box, 2 * split.middle - 1, 0}, inner_cost};
-}
-
-/// A range of equal codes, halved and halved again: some twelve levels at most.
-EmittedSubtree MortonEmitter::emit_equal(MortonRange range) const {
-  if (range.size() == 1) return leaf(range.first);
-  const std::uint32_t m = range.first + range.size() / 2;
-  const EmittedSubtree left = emit_equal({range.first, m}), right = emit_equal({m, range.last});
-  return finish({range, m}, left, right);
-}
-
-/// From left to right: where codes differ in a lower bit than the next ones do, what lies on the two sides of that
-/// place belongs together. That is the tree that division from the top makes, without a search for each place.
-EmittedSubtree MortonEmitter::emit_small(MortonRange whole, std::vector<Waiting>& waiting) const {
-  const auto differs_lower = [](std::uint64_t a, std::uint64_t b) { return a < b && a < (a ^ b); };
-  waiting.clear();
-  EmittedSubtree subtree;
-  for (std::uint32_t first = whole.first, last; first < whole.last; first = last) {
-    const std::uint64_t key = order_[first].key;
-    for (last = first + 1; last < whole.last && order_[last].key == key;) ++last;
-    subtree = emit_equal({first, last});
-    const std::uint64_t step = last < whole.last ? key ^ order_[last].key : ~std::uint64_t{0};
-    std::uint32_t begin = first;
-    for (; !waiting.empty() && differs_lower(waiting.back().step, step); waiting.pop_back()) {
-      subtree = finish({{waiting.back().first, last}, begin}, waiting.back().subtree, subtree);
-      begin = waiting.back().first;
+std::vector<std::uint32_t> MortonEmitter::emit(std::span<const MortonRange> ranges, std::vector<tree::TopNode>& top,
+                                               Executor& executor) {
+  std::vector<std::uint32_t> roots(ranges.size());
+  std::vector<Split> splits;  // of the large ranges, parents before children
+  std::vector<Split> tasks;   // from left to right
+  std::vector<Split> open;
+  const auto open_node = [&](MortonRange range) {
+    open.push_back({range, 0, std::uint32_t(top.size())});
+    top.emplace_back();
+    return open.back().node;
+  };
+  for (std::size_t r = 0; r < ranges.size(); ++r) {
+    roots[r] = open_node(ranges[r]);
+    while (!open.empty()) {
+      Split split = open.back();
+      open.pop_back();
+      if (split.range.size() <= kTaskSize) {
+        tasks.push_back(split);
+        continue;
+      }
+      split.middle = middle(split.range);
+      splits.push_back(split);
+      const std::uint32_t right = open_node({split.middle, split.range.last});
+      const std::uint32_t left = open_node({split.range.first, split.middle});
+      top[split.node].left = left;
+      top[split.node].right = right;
     }
-    waiting.push_back({subtree, begin, step});
-  }
-  return subtree;
-}
-
-std::vector<EmittedSubtree> MortonEmitter::emit(std::span<const MortonRange> ranges, Executor& executor) const {
-  std::vector<Split> splits;  // of the large ranges and, between them, the tasks, in depth-first order
-  std::vector<MortonRange> tasks;
-  std::vector<MortonRange> open(ranges.rbegin(), ranges.rend());
-  while (!open.empty()) {
-    const MortonRange range = open.back();
-    open.pop_back();
-    if (range.size() <= kTaskSize) {
-      splits.push_back({range, 0});
-      tasks.push_back(range);
-      continue;
-    }
-    const std::uint32_t m = middle(range);
-    splits.push_back({range, m});
-    open.push_back({m, range.last});
-    open.push_back({range.first, m});
   }
 
   // Treelets may be of a few references each, so several make a piece of work.
-  std::vector<std::size_t> pieces{0};
+  std::vector<std::size_t> works{0};
   std::uint32_t size = 0;
   for (std::size_t t = 0; t < tasks.size(); ++t) {
-    size += tasks[t].size();
+    size += tasks[t].range.size();
     if (size < kTaskSize / 2 && t + 1 < tasks.size()) continue;
-    pieces.push_back(t + 1);
+    works.push_back(t + 1);
     size = 0;
   }
-  std::vector<EmittedSubtree> task_roots(tasks.size());
-  executor.for_chunks(pieces.size() - 1, 1, [&](std::size_t piece, std::size_t, std::size_t) {
-    std::vector<Waiting> waiting;
-    for (std::size_t t = pieces[piece]; t < pieces[piece + 1]; ++t) {
+  std::vector<Subtree> made(splits.empty() ? 0 : top.size());
+  const auto place = [&](const Split& split, const Subtree& subtree) {
+    tree::TopNode& node = top[split.node];
+    subtree.store(node.root);
+    if (!made.empty()) made[split.node] = subtree;
+    node.inner = subtree.inner;
+    node.first_reference = split.range.first;
+    node.reference_count = split.range.size();
+  };
+  executor.for_chunks(works.size() - 1, 1, [&](std::size_t work, std::size_t, std::size_t) {
+    Writer writer(*this);
+    for (std::size_t t = works[work]; t < works[work + 1]; ++t) {
       if (cancel_ && cancel_->load(std::memory_order_relaxed)) return;
-      task_roots[t] = emit_small(tasks[t], waiting);
+      place(tasks[t], writer.make(tasks[t].range));
     }
   });
 
-  std::vector<EmittedSubtree> made;
-  const auto take = [&] {
-    const EmittedSubtree subtree = made.back();
-    made.pop_back();
-    return subtree;
-  };
-  std::size_t task = tasks.size();
+  const Writer writer(*this);
   for (std::size_t s = splits.size(); s-- > 0;) {
-    if (splits[s].middle == 0) {
-      made.push_back(task_roots[--task]);
-      continue;
-    }
-    const EmittedSubtree left = take(), right = take();
-    made.push_back(finish(splits[s], left, right));
+    tree::TopNode& node = top[splits[s].node];
+    Subtree whole = writer.over(made[node.left], made[node.right]);
+    whole.first = 0;
+    if (writer.becomes_leaf(splits[s].range.first, splits[s].range.size(), whole)) node.left = node.right = 0;
+    place(splits[s], whole);
   }
-  return {made.rbegin(), made.rend()};  // they were made from the last range to the first
+  return roots;
 }
 
 }  // namespace boxwood::builders

@@ -11,6 +11,7 @@
 #include "boxwood/refs.h"
 #include "boxwood/tree.h"
 #include "parallel/radix_sort.h"
+#include "tree/join_pieces.h"
 
 namespace boxwood::builders {
 
@@ -20,15 +21,7 @@ struct MortonRange {
   std::uint32_t size() const { return last - first; }
 };
 
-/// A subtree whose root has no place yet, with its price: the sum over its nodes of area times cost.
-struct EmittedSubtree {
-  tree::Node root;
-  double cost = 0;
-};
-
-/// Makes radix trees (see emit_morton.cpp) over ranges of sorted references. A node that divides its range at position
-/// m keeps its children at nodes[2 * m - 1] and nodes[2 * m]. Each position between 1 and n - 1 divides at most one
-/// range, so threads never meet, and tree::canonicalize closes the gaps afterwards.
+/// Makes radix trees (see emit_morton.cpp) over ranges of sorted references, as pieces for tree::join_pieces.
 class MortonEmitter {
  public:
   struct Leaves {
@@ -36,28 +29,38 @@ class MortonEmitter {
     tree::CostModel cost;
   };
 
-  /// `nodes` has two slots per reference. `cancel` may be null.
+  /// `cancel` may be null.
   MortonEmitter(std::span<const KeyedIndex> order, std::span<const refs::Reference> references, const Leaves& leaves,
-                std::span<tree::Node> nodes, const std::atomic<bool>* cancel)
-      : order_(order), references_(references), leaves_(leaves), nodes_(nodes), cancel_(cancel) {}
+                const std::atomic<bool>* cancel)
+      : order_(order),
+        references_(references),
+        leaves_(leaves),
+        slots_(2 * order.size()),
+        primitives_(order.size()),
+        cancel_(cancel) {}
 
-  /// One subtree for each range; the ranges must not overlap. Parallel within and across ranges. When the build is
+  /// Makes a subtree for each range; the ranges must not overlap. Appends to `top`, which must have a node already, and
+  /// returns the numbers that the subtrees' roots have there. Parallel within and across ranges. When the build is
   /// cancelled on the way, the subtrees are not all there.
-  std::vector<EmittedSubtree> emit(std::span<const MortonRange> ranges, Executor& executor) const;
+  std::vector<std::uint32_t> emit(std::span<const MortonRange> ranges, std::vector<tree::TopNode>& top,
+                                  Executor& executor);
+
+  /// What the pieces point to.
+  std::span<const tree::Node> slots() const { return slots_.span(); }
+  /// The primitives of the references in their sorted order, where subtrees have been made.
+  std::span<const std::uint32_t> primitives() const { return primitives_.span(); }
 
  private:
   struct Split;
-  struct Waiting;
+  struct Subtree;
+  struct Writer;
   std::uint32_t middle(MortonRange range) const;
-  EmittedSubtree leaf(std::uint32_t position) const;
-  EmittedSubtree finish(const Split& split, const EmittedSubtree& left, const EmittedSubtree& right) const;
-  EmittedSubtree emit_equal(MortonRange range) const;
-  EmittedSubtree emit_small(MortonRange range, std::vector<Waiting>& waiting) const;
 
   std::span<const KeyedIndex> order_;
   std::span<const refs::Reference> references_;
   Leaves leaves_;
-  std::span<tree::Node> nodes_;
+  AlignedBuffer<tree::Node> slots_;
+  AlignedBuffer<std::uint32_t> primitives_;
   const std::atomic<bool>* cancel_;
 };
 

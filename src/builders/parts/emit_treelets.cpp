@@ -5,10 +5,8 @@
 // a split and a leaf up here, so the price of a visit (PBRT adds 0.125 to each split) would change nothing and is left
 // out.
 //
-// To the driver of the top-down builders, treelets are references like any others: a box and a number. Its tree is then
-// written to the slots described at MortonEmitter: a split that leaves `middle` treelets to its left takes the slots of
-// the position where treelet number `middle` begins, although by then another treelet may stand at that place in the
-// order. Each number is used once, which is all that counts. O(t log t) for t treelets, deterministic.
+// To the driver of the top-down builders, treelets are references like any others: a box and a number.
+// O(t log t) for t treelets, deterministic.
 #include "builders/parts/emit_treelets.h"
 
 #include "builders/parts/area_scale.h"
@@ -58,12 +56,12 @@ class TreeletFinder : public PlaneFinder {
   bool all_axes_;
 };
 
-refs::ReferenceSet as_references(std::span<const EmittedSubtree> treelets) {
+refs::ReferenceSet as_references(std::span<const std::uint32_t> treelets, std::span<const tree::TopNode> top) {
   refs::ReferenceSet set;
   set.references = AlignedBuffer<refs::Reference>(treelets.size());
   set.primitive_count = treelets.size();
   for (std::size_t t = 0; t < treelets.size(); ++t) {
-    const Box& box = treelets[t].root.bounds;
+    const Box& box = top[treelets[t]].root.bounds;
     set.references[t] = {box.lower, std::uint32_t(t), box.upper, 0};
     set.bounds.grow(box);
   }
@@ -72,33 +70,37 @@ refs::ReferenceSet as_references(std::span<const EmittedSubtree> treelets) {
 
 }  // namespace
 
-bool join_treelets(std::span<const MortonRange> ranges, std::span<const EmittedSubtree> treelets,
-                   const OptionValues& options, const BuildContext& context, std::span<tree::Node> nodes) {
+std::optional<std::uint32_t> join_treelets(std::span<const std::uint32_t> treelets, const OptionValues& options,
+                                           const BuildContext& context, std::vector<tree::TopNode>& top) {
   const BuildContext quiet{context.executor, {}, context.cancel};
-  ReferenceRanges references(as_references(treelets));
-  const BuildRange root = references.root(context.executor);
-  TreeletFinder finder(references, root, options);
+  ReferenceRanges references(as_references(treelets, top));
+  const BuildRange whole = references.root(context.executor);
+  TreeletFinder finder(references, whole, options);
   TopDownDriver<TreeletFinder> driver(finder, treelets.size(), quiet);
-  if (!driver.run(root)) return false;
+  if (!driver.run(whole)) return {};
 
-  struct Move {
-    std::uint32_t from, to;
+  const auto nodes = driver.nodes().span();
+  const auto number = [&](const tree::Node& node) {
+    if (node.is_leaf()) return treelets[driver.ids()[node.first]];
+    top.push_back({.root = node});
+    return std::uint32_t(top.size() - 1);
   };
-  std::vector<Move> open{{0, 0}};
+  std::vector<std::uint32_t> open;
+  const auto follow = [&](const tree::Node& node) {
+    const std::uint32_t n = number(node);
+    if (!node.is_leaf()) open.push_back(n);
+    return n;
+  };
+  const std::uint32_t root = follow(nodes[0]);
   while (!open.empty()) {
-    const auto [from, to] = open.back();
+    const std::uint32_t n = open.back();
     open.pop_back();
-    const tree::Node& node = driver.nodes()[from];
-    if (node.is_leaf()) {
-      nodes[to] = treelets[driver.ids()[node.first]].root;
-      continue;
-    }
-    const std::uint32_t right = 2 * ranges[node.first / 2].first;  // the driver's slots are 2 * middle and one more
-    nodes[to] = {node.bounds, right - 1, 0};
-    open.push_back({node.first, right - 1});
-    open.push_back({node.first + 1, right});
+    const std::uint32_t pair = top[n].root.first;
+    const std::uint32_t left = follow(nodes[pair]), right = follow(nodes[pair + 1]);
+    top[n].left = left;
+    top[n].right = right;
   }
-  return true;
+  return root;
 }
 
 }  // namespace boxwood::builders

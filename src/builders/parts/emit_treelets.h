@@ -1,16 +1,19 @@
 // The upper part of an HLBVH: a tree over the roots of treelets, divided by the surface area heuristic.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "boxwood/builders.h"
-#include "builders/parts/emit_morton.h"
+#include "tree/join_pieces.h"
 
 namespace boxwood::builders {
 
-/// Joins treelets into one tree, whose root goes to nodes[0]. `ranges` are their references and `treelets` their roots,
-/// as the emitter made them: in Morton order, not empty. Looks at the options `bins` and `axes`. False when cancelled.
-bool join_treelets(std::span<const MortonRange> ranges, std::span<const EmittedSubtree> treelets,
-                   const OptionValues& options, const BuildContext& context, std::span<tree::Node> nodes);
+/// Joins the treelets whose roots have these numbers in `top` into one tree, appending its nodes there. Not empty.
+/// Looks at the options `bins` and `axes`. Returns the root's number; none when cancelled.
+std::optional<std::uint32_t> join_treelets(std::span<const std::uint32_t> treelets, const OptionValues& options,
+                                           const BuildContext& context, std::vector<tree::TopNode>& top);
 
 }  // namespace boxwood::builders

@@ -34,13 +34,4 @@ AlignedBuffer<KeyedIndex> morton_order(std::span<const refs::Reference> referenc
   return order;
 }
 
-AlignedBuffer<std::uint32_t> sorted_primitives(std::span<const KeyedIndex> order,
-                                               std::span<const refs::Reference> references, Executor& executor) {
-  AlignedBuffer<std::uint32_t> primitives(order.size());
-  executor.for_chunks(order.size(), kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) primitives[i] = references[order[i].index].primitive;
-  });
-  return primitives;
-}
-
 }  // namespace boxwood::builders

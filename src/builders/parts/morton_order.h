@@ -15,8 +15,4 @@ namespace boxwood::builders {
 AlignedBuffer<KeyedIndex> morton_order(std::span<const refs::Reference> references, int bits_per_axis,
                                        Executor& executor);
 
-/// The primitives in that order.
-AlignedBuffer<std::uint32_t> sorted_primitives(std::span<const KeyedIndex> order,
-                                               std::span<const refs::Reference> references, Executor& executor);
-
 }  // namespace boxwood::builders
