@@ -1,7 +1,7 @@
 // Memory of AlignedBuffer. Blocks of half a megabyte and more ask the system for huge pages: a build touches hundreds
 // of megabytes once, and one page fault for 2 MiB costs little more than one for 4 KiB (on virtual machines less than a
-// hundredth of the 512 that it replaces). Some of them are kept when they are given back: unmapping a block interrupts
-// the other threads, and mapping it again clears its pages (docs/performance.md, "What builds spend").
+// hundredth of the 512 that it replaces). Some blocks are kept when they are given back, smaller ones too: unmapping a
+// block interrupts the other threads, and mapping it again clears its pages (docs/performance.md, "What builds spend").
 #include <algorithm>
 #include <bit>
 #include <iterator>
@@ -20,34 +20,43 @@ namespace {
 
 constexpr std::size_t kHugePage = std::size_t{1} << 21;
 constexpr std::size_t kWorthAPage = kHugePage / 4;
+/// Smaller blocks come from what the process has anyway.
+constexpr std::size_t kWorthKeeping = std::size_t{1} << 15;
+constexpr std::size_t kPage = std::size_t{1} << 12;
 
 /// How many bytes of a block are to be huge pages: all but a rest that isn't worth one.
 std::size_t huge_part(std::size_t bytes) {
 #if defined(__linux__)
-  return bytes > SIZE_MAX / 2 ? 0 : (bytes + kHugePage - kWorthAPage) / kHugePage * kHugePage;
+  return (bytes + kHugePage - kWorthAPage) / kHugePage * kHugePage;
 #else
   return bytes - bytes;
 #endif
 }
 
-/// The size of the block for so many bytes: coarse steps, so that blocks serve again for arrays of about their size.
-std::size_t block_size(std::size_t bytes, std::size_t huge) {
-  const std::size_t step = std::max(kWorthAPage, std::bit_floor(bytes) / 16);
-  return std::max(huge, (bytes + step - 1) / step * step);
-}
+/// What is asked of the system for an array that is worth keeping.
+struct Block {
+  std::size_t size, alignment, huge;
 
-/// A large block from the system.
-void* new_block(std::size_t size, std::size_t huge, std::size_t alignment) {
-  void* const block = ::operator new(size, std::align_val_t(alignment));
+  /// In coarse steps, so that blocks serve again for arrays of about their size.
+  static Block of(std::size_t bytes, std::size_t alignment) {
+    const std::size_t huge = huge_part(bytes);
+    const std::size_t step = std::max(huge ? kWorthAPage : kPage, std::bit_floor(bytes) / 16);
+    return {std::max(huge, (bytes + step - 1) / step * step), huge ? std::max(alignment, kHugePage) : alignment, huge};
+  }
+  void* from_system() const {
+    void* const block = ::operator new(size, std::align_val_t(alignment));
 #if defined(__linux__)
-  madvise(block, huge, MADV_HUGEPAGE);  // advice: where it isn't taken the pages are small
-#else
-  static_cast<void>(huge);
+    if (huge) madvise(block, huge, MADV_HUGEPAGE);  // advice: where it isn't taken the pages are small
 #endif
-  return block;
+    return block;
+  }
+};
+
+bool is_worth_keeping(std::size_t bytes) {
+  return bytes >= kWorthKeeping && bytes <= SIZE_MAX / 2;
 }
 
-/// Large blocks that were given back, the oldest first.
+/// Blocks that were given back, the oldest first.
 class KeptBlocks {
  public:
   /// A block of just this size and alignment, or null.
@@ -92,7 +101,7 @@ class KeptBlocks {
   }
 
  private:
-  static constexpr std::size_t kMostBlocks = 128;
+  static constexpr std::size_t kMostBlocks = 256;
   struct Kept {
     void* block;
     std::size_t size, alignment;
@@ -128,22 +137,21 @@ constexpr std::size_t kMostKept = std::size_t{64} << 20;
 }  // namespace
 
 void* allocate(std::size_t bytes, std::size_t alignment) {
-  const std::size_t huge = huge_part(bytes);
-  if (huge == 0) return ::operator new(bytes, std::align_val_t(alignment));
-  const std::size_t size = block_size(bytes, huge), aligned = std::max(alignment, kHugePage);
-  if (void* const block = kept_blocks().take(size, aligned)) return block;
+  if (!is_worth_keeping(bytes)) return ::operator new(bytes, std::align_val_t(alignment));
+  const Block block = Block::of(bytes, alignment);
+  if (void* const kept = kept_blocks().take(block.size, block.alignment)) return kept;
   try {
-    return new_block(size, huge, aligned);
+    return block.from_system();
   } catch (const std::bad_alloc&) {
     give_back_unused();
-    return new_block(size, huge, aligned);
+    return block.from_system();
   }
 }
 
 void release(void* block, std::size_t bytes, std::size_t alignment) noexcept {
-  const std::size_t huge = huge_part(bytes);
-  if (huge == 0) return ::operator delete(block, std::align_val_t(alignment));
-  if (block) kept_blocks().keep(block, block_size(bytes, huge), std::max(alignment, kHugePage), kMostKept);
+  if (!is_worth_keeping(bytes)) return ::operator delete(block, std::align_val_t(alignment));
+  const Block kept = Block::of(bytes, alignment);
+  if (block) kept_blocks().keep(block, kept.size, kept.alignment, kMostKept);
 }
 
 void give_back_unused() noexcept {

@@ -26,7 +26,7 @@ std::size_t digit(std::uint64_t key, int shift) {
 
 /// Turns the counts of all chunks into the places of each chunk's first item of each digit. False: all items have the
 /// same digit, so that nothing would move.
-bool place(std::vector<Counts>& chunks, std::size_t items) {
+bool place(LargeVector<Counts>& chunks, std::size_t items) {
   std::uint32_t next = 0;
   for (std::size_t d = 0; d < kDigits; ++d) {
     const std::uint32_t first = next;
@@ -43,7 +43,7 @@ void radix_sort(AlignedBuffer<KeyedIndex>& items, int bits, Executor& executor) 
   if (size < 2) return;
   AlignedBuffer<KeyedIndex> other(size);
   const std::size_t chunk_size = std::clamp(size / 8, kSmallestChunk, kLargestChunk);
-  std::vector<Counts> chunks((size + chunk_size - 1) / chunk_size);
+  LargeVector<Counts> chunks((size + chunk_size - 1) / chunk_size);
   for (int shift = 0; shift < bits; shift += kDigitBits) {
     executor.for_chunks(size, chunk_size, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
       Counts counts{};

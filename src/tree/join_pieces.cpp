@@ -19,13 +19,13 @@ struct Placed {
   std::uint32_t first_reference = 0;
 };
 
-std::vector<Placed> in_preorder(std::span<const TopNode> top, std::uint32_t root) {
+LargeVector<Placed> in_preorder(std::span<const TopNode> top, std::uint32_t root) {
   struct Open {
     std::uint32_t node;
     std::uint32_t right_of;  ///< the placed parent of a right child; 0 else, as the root has no parent
     bool is_right;
   };
-  std::vector<Placed> placed;
+  LargeVector<Placed> placed;
   placed.reserve(top.size());
   std::vector<Open> open{{root, 0, false}};
   while (!open.empty()) {
@@ -44,7 +44,7 @@ std::vector<Placed> in_preorder(std::span<const TopNode> top, std::uint32_t root
 }
 
 /// Adds up sizes from the pieces to the root, then hands out places from the root to the pieces.
-void place(std::vector<Placed>& nodes) {
+void place(LargeVector<Placed>& nodes) {
   for (std::size_t i = nodes.size(); i-- > 0;) {
     Placed& node = nodes[i];
     if (node.right == 0) {
@@ -91,7 +91,7 @@ void write(const Placed& placed, std::span<const Node> slots, std::span<const st
 
 BinaryTree join_pieces(std::span<const TopNode> top, std::uint32_t root, std::span<const Node> slots,
                        std::span<const std::uint32_t> references, std::size_t primitive_count, Executor& executor) {
-  std::vector<Placed> placed = in_preorder(top, root);
+  LargeVector<Placed> placed = in_preorder(top, root);
   place(placed);
   BinaryTree tree;
   tree.primitive_count = primitive_count;

@@ -38,8 +38,8 @@ constexpr OptionSpec kOptions[] = {
     kMergeGrowthOption};
 
 /// Ranges of equal first bits.
-std::vector<MortonRange> treelet_ranges(std::span<const KeyedIndex> order, int shift) {
-  std::vector<MortonRange> ranges;
+LargeVector<MortonRange> treelet_ranges(std::span<const KeyedIndex> order, int shift) {
+  LargeVector<MortonRange> ranges;
   std::uint32_t first = 0;
   const auto count = std::uint32_t(order.size());
   for (std::uint32_t i = 1; i <= count; ++i) {
@@ -60,7 +60,7 @@ Result<tree::BinaryTree> build_hlbvh(refs::ReferenceSet&& set, const OptionValue
 
   MortonEmitter emitter(order.span(), set.references.span(), leaves(options), context.cancel);
   const auto ranges = treelet_ranges(order.span(), 3 * axis_bits - int(options.integer("treelet.bits")));
-  std::vector<tree::TopNode> top(1);
+  LargeVector<tree::TopNode> top(1);
   const auto treelets = emitter.emit(ranges, top, context.executor);
   if (monitor.cancelled()) return cancelled_error();
   const auto root = join_treelets(treelets, options, context, top);

@@ -24,7 +24,7 @@ Result<tree::BinaryTree> build_lbvh(refs::ReferenceSet&& set, const OptionValues
 
   MortonEmitter emitter(order.span(), set.references.span(), leaves(options), context.cancel);
   const MortonRange all{0, count};
-  std::vector<tree::TopNode> top(1);
+  LargeVector<tree::TopNode> top(1);
   const std::uint32_t root = emitter.emit({&all, 1}, top, context.executor)[0];
   monitor.finish(1);
   if (monitor.cancelled()) return cancelled_error();

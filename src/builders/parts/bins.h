@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "boxwood/refs.h"
-#include "builders/parts/float4.h"
+#include "builders/parts/box4.h"
 
 namespace boxwood::builders {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "builders/parts/float4.h"
+#include "builders/parts/box4.h"
 
 namespace boxwood::builders {
 

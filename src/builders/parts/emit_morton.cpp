@@ -17,7 +17,7 @@
 
 #include <bit>
 
-#include "builders/parts/float4.h"
+#include "builders/parts/box4.h"
 
 namespace boxwood::builders {
 namespace {
@@ -177,11 +177,11 @@ std::uint32_t MortonEmitter::middle(MortonRange range) const {
   return one;
 }
 
-std::vector<std::uint32_t> MortonEmitter::emit(std::span<const MortonRange> ranges, std::vector<tree::TopNode>& top,
+LargeVector<std::uint32_t> MortonEmitter::emit(std::span<const MortonRange> ranges, LargeVector<tree::TopNode>& top,
                                                Executor& executor) {
-  std::vector<std::uint32_t> roots(ranges.size());
-  std::vector<Split> splits;  // of the large ranges, parents before children
-  std::vector<Split> tasks;   // from left to right
+  LargeVector<std::uint32_t> roots(ranges.size());
+  LargeVector<Split> splits;  // of the large ranges, parents before children
+  LargeVector<Split> tasks;   // from left to right
   std::vector<Split> open;
   const auto open_node = [&](MortonRange range) {
     open.push_back({range, 0, std::uint32_t(top.size())});
@@ -215,7 +215,7 @@ std::vector<std::uint32_t> MortonEmitter::emit(std::span<const MortonRange> rang
     works.push_back(t + 1);
     size = 0;
   }
-  std::vector<Subtree> made(splits.empty() ? 0 : top.size());
+  LargeVector<Subtree> made(splits.empty() ? 0 : top.size());
   const auto place = [&](const Split& split, const Subtree& subtree) {
     tree::TopNode& node = top[split.node];
     subtree.store(node.root);

@@ -42,7 +42,7 @@ class MortonEmitter {
   /// Makes a subtree for each range; the ranges must not overlap. Appends to `top`, which must have a node already, and
   /// returns the numbers that the subtrees' roots have there. Parallel within and across ranges. When the build is
   /// cancelled on the way, the subtrees are not all there.
-  std::vector<std::uint32_t> emit(std::span<const MortonRange> ranges, std::vector<tree::TopNode>& top,
+  LargeVector<std::uint32_t> emit(std::span<const MortonRange> ranges, LargeVector<tree::TopNode>& top,
                                   Executor& executor);
 
   /// What the pieces point to.

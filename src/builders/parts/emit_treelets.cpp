@@ -71,7 +71,7 @@ refs::ReferenceSet as_references(std::span<const std::uint32_t> treelets, std::s
 }  // namespace
 
 std::optional<std::uint32_t> join_treelets(std::span<const std::uint32_t> treelets, const OptionValues& options,
-                                           const BuildContext& context, std::vector<tree::TopNode>& top) {
+                                           const BuildContext& context, LargeVector<tree::TopNode>& top) {
   const BuildContext quiet{context.executor, {}, context.cancel};
   ReferenceRanges references(as_references(treelets, top));
   const BuildRange whole = references.root(context.executor);

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "boxwood/builders.h"
 #include "tree/join_pieces.h"
@@ -14,6 +13,6 @@ namespace boxwood::builders {
 /// Joins the treelets whose roots have these numbers in `top` into one tree, appending its nodes there. Not empty.
 /// Looks at the options `bins` and `axes`. Returns the root's number; none when cancelled.
 std::optional<std::uint32_t> join_treelets(std::span<const std::uint32_t> treelets, const OptionValues& options,
-                                           const BuildContext& context, std::vector<tree::TopNode>& top);
+                                           const BuildContext& context, LargeVector<tree::TopNode>& top);
 
 }  // namespace boxwood::builders

@@ -38,6 +38,20 @@ TEST(Memory, ALargeBlockServesTheNextArrayOfItsSize) {
   memory::give_back_unused();
 }
 
+TEST(Memory, SoDoesOneOfMiddleSize) {
+  if (test::kInstrumented) GTEST_SKIP() << "a sanitizer must see every release";
+  memory::give_back_unused();
+  const std::uintptr_t block = allocate_and_release(kMiB / 8);
+  EXPECT_EQ(allocate_and_release(kMiB / 8 - 100), block) << "nearly the size";
+  void* const taken = memory::allocate(kMiB / 8, 64);
+  EXPECT_EQ(reinterpret_cast<std::uintptr_t>(taken), block);
+  void* const other = memory::allocate(kMiB / 8, 64);
+  EXPECT_NE(other, taken);
+  memory::release(other, kMiB / 8, 64);
+  memory::release(taken, kMiB / 8, 64);
+  memory::give_back_unused();
+}
+
 TEST(Memory, BlocksInUseAreNeverShared) {
   std::vector<AlignedBuffer<std::uint8_t>> buffers;
   for (int round = 0; round < 3; ++round) {

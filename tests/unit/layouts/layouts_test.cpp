@@ -126,6 +126,17 @@ TEST(Layouts, RefuseWhatTheyCanNotHold) {
   TriangleMesh shorter = mesh;
   shorter.triangles.resize(50);
   EXPECT_EQ(encode_linear(tree, shorter, executor).error().code, ErrorCode::out_of_range);
+  for (const int width : {4, 8, 16}) {
+    auto whole = optimizers::collapse_to_wide(tree, {.width = width}, executor);
+    ASSERT_TRUE(whole);
+    EXPECT_EQ(encode_wide(*whole, shorter, executor).error().code, ErrorCode::out_of_range);
+    MeshView fewer_vertices = mesh;
+    --fewer_vertices.vertex_count;
+    EXPECT_EQ(encode_wide(*whole, fewer_vertices, executor).error().code, ErrorCode::out_of_range);
+    whole->first_child[0] = 0;
+    whole->first_child[1] = std::uint32_t(whole->children.size());  // the root takes its children's children
+    EXPECT_EQ(encode_wide(*whole, mesh, executor).error().code, ErrorCode::malformed);
+  }
 }
 
 TEST(Layouts, Names) {

@@ -5,16 +5,12 @@
 #include <cstdint>
 #include <cstring>
 
-#include "boxwood/math.h"
-#include "boxwood/refs.h"
-
 #if defined(__SSE2__)
 #include <emmintrin.h>
+#include <xmmintrin.h>
 #endif
 
-namespace boxwood::builders {
-
-using boxwood::maximum, boxwood::minimum;  // of floats, or ours below would hide them
+namespace boxwood {
 
 #if defined(__SSE2__)
 
@@ -22,6 +18,7 @@ struct Float4 {
   __m128 v;
 
   static Float4 load(const void* p) { return {_mm_load_ps(static_cast<const float*>(p))}; }
+  static Float4 load_anywhere(const void* p) { return {_mm_loadu_ps(static_cast<const float*>(p))}; }
   static Float4 fill(float x) { return {_mm_set1_ps(x)}; }
   static Float4 fill_bits(std::uint32_t x) { return {_mm_castsi128_ps(_mm_set1_epi32(static_cast<int>(x)))}; }
   static Float4 of(float x, float y, float z, float w = 0) { return {_mm_setr_ps(x, y, z, w)}; }
@@ -80,6 +77,10 @@ inline float half_area(Float4 e) {
   const __m128 xy_yz = _mm_add_ss(p, _mm_shuffle_ps(p, p, _MM_SHUFFLE(1, 1, 1, 1)));
   return _mm_cvtss_f32(_mm_add_ss(xy_yz, _mm_movehl_ps(p, p)));
 }
+/// Rows become columns.
+inline void transpose(Float4& a, Float4& b, Float4& c, Float4& d) {
+  _MM_TRANSPOSE4_PS(a.v, b.v, c.v, d.v);
+}
 inline void prefetch(const void* p) {
   _mm_prefetch(static_cast<const char*>(p), _MM_HINT_T0);
 }
@@ -94,6 +95,7 @@ struct Float4 {
     std::memcpy(r.v, p, 16);
     return r;
   }
+  static Float4 load_anywhere(const void* p) { return load(p); }
   static Float4 fill(float x) { return {{x, x, x, x}}; }
   static Float4 fill_bits(std::uint32_t x) {
     float f;
@@ -165,28 +167,14 @@ inline Float4 half_areas(Float4 e0, Float4 e1, Float4 e2) {
 inline float half_area(Float4 e) {
   return e.v[0] * e.v[1] + e.v[1] * e.v[2] + e.v[2] * e.v[0];
 }
+inline void transpose(Float4& a, Float4& b, Float4& c, Float4& d) {
+  const Float4 rows[] = {a, b, c, d};
+  for (int i = 0; i < 4; ++i)
+    a.v[i] = rows[i].v[0], b.v[i] = rows[i].v[1], c.v[i] = rows[i].v[2], d.v[i] = rows[i].v[3];
+}
 inline void prefetch(const void*) {}
 
 #endif
-
-/// A box in two registers, uninitialised; what stands in the fourth lanes is never looked at.
-struct Box4 {
-  Float4 lower, upper;
-
-  static Box4 empty() { return {Float4::fill(kInfinity), Float4::fill(-kInfinity)}; }
-  static Box4 of(const Box& b) {
-    return {Float4::of(b.lower.x, b.lower.y, b.lower.z), Float4::of(b.upper.x, b.upper.y, b.upper.z)};
-  }
-  static Box4 of(const refs::Reference& r) { return {Float4::load(&r.lower), Float4::load(&r.upper)}; }
-
-  void grow(const Box4& b) { lower = minimum(b.lower, lower), upper = maximum(b.upper, upper); }
-  void grow(Float4 p) { lower = minimum(p, lower), upper = maximum(p, upper); }
-  Box box() const {
-    alignas(16) float l[4], u[4];
-    lower.store(l), upper.store(u);
-    return {{l[0], l[1], l[2]}, {u[0], u[1], u[2]}};
-  }
-};
 
 /// Lanes 0 to 2 all bits, lane 3 none: takes a primitive id out of what is to be calculated with.
 inline Float4 xyz_mask() {
@@ -196,9 +184,4 @@ inline Float4 xyz_mask() {
   return Float4::of(f, f, f, 0);
 }
 
-/// Twice the centre of a reference's box; the fourth lane is zero.
-inline Float4 centroid2(const Box4& b, Float4 mask) {
-  return (b.lower & mask) + (b.upper & mask);
-}
-
-}  // namespace boxwood::builders
+}  // namespace boxwood
