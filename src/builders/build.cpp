@@ -73,9 +73,9 @@ std::uint32_t merge_most(const OptionValues& options) {
 }
 
 /// Builds over runs of references, each at the price and size of the references in it.
-Result<tree::BinaryTree> build_over_runs(const BuilderInfo& info, refs::ReferenceSet&& references, OptionValues options,
-                                         std::uint32_t most, const BuildContext& context) {
-  MergedRuns runs(std::move(references), most, options.number(kMergeGrowth), context.executor);
+Result<tree::BinaryTree> build_over_runs(const BuilderInfo& info, refs::ReferenceSet&& references, bool numbered,
+                                         OptionValues options, std::uint32_t most, const BuildContext& context) {
+  MergedRuns runs(std::move(references), numbered, most, options.number(kMergeGrowth), context.executor);
   options.set("cost.intersection", options.number("cost.intersection") * runs.references_per_run());
   options.set(kLeafMax, options.integer(kLeafMax) / most);
   auto tree = info.build(runs.take_set(), options, context);
@@ -113,8 +113,11 @@ Result<tree::BinaryTree> build_checked(refs::ReferenceSet&& references, const Bu
 #endif
   if (!references.primitives) references.primitives = refs::box_primitives();
   const std::uint32_t most = merge_most(*values);
-  Result<tree::BinaryTree> tree = most > 1 ? build_over_runs(info, std::move(references), *values, most, context)
-                                           : info.build(std::move(references), *values, context);
+  const bool numbered = checked.increasing && references.references[references.references.size() - 1].primitive + 1 ==
+                                                  references.references.size();
+  Result<tree::BinaryTree> tree = most > 1
+                                      ? build_over_runs(info, std::move(references), numbered, *values, most, context)
+                                      : info.build(std::move(references), *values, context);
   if (tree) {
     tree->splits_references |= repeats;
     if (tree->splits_references) tree::remove_duplicates(*tree);

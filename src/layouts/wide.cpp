@@ -11,17 +11,10 @@
 #include "layouts/encode.h"
 #include "layouts/quads.h"
 #include "math/float4.h"
+#include "mesh/load_vertex.h"
 
 namespace boxwood::layouts {
 namespace {
-
-/// The three floats of a vertex, and whatever follows them.
-Float4 load_vertex(const MeshView& mesh, std::uint32_t vertex) {
-  const auto* place = static_cast<const char*>(mesh.positions) + vertex * mesh.vertex_stride;
-  if (vertex + 1 < mesh.vertex_count) return Float4::load_anywhere(place);
-  const Vec3 last = mesh.vertex(vertex);  // no byte behind it may be read
-  return Float4::of(last.x, last.y, last.z);
-}
 
 /// False, with the block not filled in: a reference is not to a triangle of the mesh.
 bool fill_block(TriangleBlock& block, std::span<const std::uint32_t> references, const MeshView& mesh) {
@@ -37,7 +30,7 @@ bool fill_block(TriangleBlock& block, std::span<const std::uint32_t> references,
     const auto vertices = mesh.corners(primitive);
     for (std::size_t k = 0; k < 3; ++k) {
       if (vertices[k] >= mesh.vertex_count) return false;
-      corners[k][lane] = load_vertex(mesh, vertices[k]);
+      corners[k][lane] = mesh::load_vertex(mesh, vertices[k]);
     }
   }
   for (std::size_t k = 0; k < 3; ++k) {

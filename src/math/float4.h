@@ -56,6 +56,11 @@ inline Float4 operator|(Float4 a, Float4 b) {
 inline Float4 less(Float4 a, Float4 b) {
   return {_mm_cmplt_ps(a.v, b.v)};
 }
+/// Are lanes 0 to 2 within +-limit? NaNs are not.
+inline bool all_within(Float4 v, float limit) {
+  const __m128 size = _mm_andnot_ps(_mm_set1_ps(-0.0f), v.v);
+  return (_mm_movemask_ps(_mm_cmple_ps(size, _mm_set1_ps(limit))) & 7) == 7;
+}
 /// a in the lanes of the mask, b in the others.
 inline Float4 select(Float4 mask, Float4 a, Float4 b) {
   return {_mm_or_ps(_mm_and_ps(mask.v, a.v), _mm_andnot_ps(mask.v, b.v))};
@@ -154,6 +159,10 @@ inline Float4 less(Float4 a, Float4 b) {
     std::memcpy(&mask.v[i], &bits, 4);
   }
   return mask;
+}
+inline bool all_within(Float4 v, float limit) {
+  const auto within = [limit](float x) { return x <= limit && x >= -limit; };
+  return within(v.v[0]) && within(v.v[1]) && within(v.v[2]);
 }
 /// a in the lanes of the mask, b in the others.
 inline Float4 select(Float4 mask, Float4 a, Float4 b) {

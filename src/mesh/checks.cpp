@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "boxwood/mesh.h"
+#include "mesh/check_arrays.h"
 #include "mesh/chunks.h"
 
 namespace boxwood::mesh {
@@ -56,19 +57,20 @@ Status check_corners(const MeshView& mesh, Executor& executor) {
 
 }  // namespace
 
+Status check_arrays(const MeshView& mesh) {
+  if (Status status = check_array(mesh.positions, mesh.vertex_count, mesh.vertex_stride, "vertex"); !status)
+    return status;
+  if (mesh.indices) return check_array(mesh.indices, mesh.triangle_count, mesh.triangle_stride, "triangle");
+  if (mesh.triangle_count <= mesh.vertex_count / 3) return {};
+  return {ErrorCode::malformed, "mesh without indices claims " + std::to_string(mesh.triangle_count) +
+                                    " triangles, but its " + std::to_string(mesh.vertex_count) +
+                                    " vertices make only " + std::to_string(mesh.vertex_count / 3)};
+}
+
 Status check_indices(const MeshView& mesh, Executor& executor) {
   try {
-    if (Status status = check_array(mesh.positions, mesh.vertex_count, mesh.vertex_stride, "vertex"); !status)
-      return status;
-    if (!mesh.indices) {
-      if (mesh.triangle_count <= mesh.vertex_count / 3) return {};
-      return {ErrorCode::malformed, "mesh without indices claims " + std::to_string(mesh.triangle_count) +
-                                        " triangles, but its " + std::to_string(mesh.vertex_count) +
-                                        " vertices make only " + std::to_string(mesh.vertex_count / 3)};
-    }
-    if (Status status = check_array(mesh.indices, mesh.triangle_count, mesh.triangle_stride, "triangle"); !status)
-      return status;
-    return check_corners(mesh, executor);
+    if (Status status = check_arrays(mesh); !status) return status;
+    return mesh.indices ? check_corners(mesh, executor) : Status{};
   } catch (const std::bad_alloc&) {
     return {ErrorCode::out_of_memory, "not enough memory to check the mesh"};
   }

@@ -8,6 +8,8 @@
 
 #include <vector>
 
+#include "builders/parts/box4.h"
+
 namespace boxwood::builders {
 namespace {
 
@@ -19,25 +21,37 @@ std::size_t chunk_count(std::size_t count) {
   return (count + kChunk - 1) / kChunk;
 }
 
-/// Calls f(first, last, box) for each run of the references [begin, end).
-template <class F>
-void for_runs(std::span<const Reference> references, std::size_t begin, std::size_t end, std::uint32_t most,
-              float growth, F f) {
+/// Writes the runs of the references [begin, end) over them, from `begin` on, and the first reference of each. Returns
+/// their number.
+std::size_t write_runs(std::span<Reference> references, std::size_t begin, std::size_t end, std::uint32_t most,
+                       float growth, std::uint32_t* first_of_run) {
+  const Float4 mask = xyz_mask();
+  const auto load = [&](std::size_t i) {
+    const Box4 box = Box4::of(references[i]);
+    return Box4{box.lower & mask, box.upper & mask};
+  };
+  std::size_t run = begin;
   for (std::size_t first = begin; first < end;) {
-    Box box = references[first].box();
-    float parts = box.half_area();
+    Box4 box = load(first);
+    float parts = half_area(box.upper - box.lower);
+    std::uint32_t primitive = references[first].primitive;
     std::size_t last = first + 1;
     for (; last < end && last - first < most; ++last) {
-      if (references[last].primitive == references[last - 1].primitive) break;
-      const Box next = references[last].box(), joined = merge(box, next);
-      const float with_next = parts + next.half_area();
-      if (!(joined.half_area() <= growth * with_next)) break;
+      if (references[last].primitive == primitive) break;
+      const Box4 next = load(last);
+      const Box4 joined{minimum(box.lower, next.lower), maximum(box.upper, next.upper)};
+      const float with_next = parts + half_area(next.upper - next.lower);
+      if (!(half_area(joined.upper - joined.lower) <= growth * with_next)) break;
       box = joined;
       parts = with_next;
+      primitive = references[last].primitive;
     }
-    f(first, last, box);
+    box.lower.store(&references[run].lower);
+    box.upper.store(&references[run].upper);
+    first_of_run[run++] = std::uint32_t(first);
     first = last;
   }
+  return run - begin;
 }
 
 /// counts[c + 1] of each chunk c become the sums before them.
@@ -48,19 +62,19 @@ std::size_t add_up(std::vector<std::size_t>& counts) {
 
 }  // namespace
 
-MergedRuns::MergedRuns(refs::ReferenceSet&& set, std::uint32_t most, double growth, Executor& executor)
+MergedRuns::MergedRuns(refs::ReferenceSet&& set, bool numbered, std::uint32_t most, double growth, Executor& executor)
     : primitive_count_(set.primitive_count) {
-  const refs::ReferenceSet whole = std::move(set);
-  const std::span<const Reference> references = whole.references.span();
+  refs::ReferenceSet whole = std::move(set);
+  const std::span<Reference> references = whole.references.span();
   const std::size_t count = references.size();
+  if (!numbered) {
+    primitives_ = AlignedBuffer<std::uint32_t>(count);
+    for (std::size_t i = 0; i < count; ++i) primitives_[i] = references[i].primitive;
+  }
+  AlignedBuffer<std::uint32_t> first_of_run(count);  // by place, as the runs
   std::vector<std::size_t> runs_before(chunk_count(count) + 1);
-  std::vector<std::uint8_t> numbered(chunk_count(count));
   executor.for_chunks(count, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    for_runs(references, begin, end, most, float(growth),
-             [&](std::size_t, std::size_t, const Box&) { ++runs_before[chunk + 1]; });
-    bool same = true;
-    for (std::size_t i = begin; i < end; ++i) same &= references[i].primitive == i;
-    numbered[chunk] = same;
+    runs_before[chunk + 1] = write_runs(references, begin, end, most, float(growth), first_of_run.data());
   });
   const std::size_t runs = add_up(runs_before);
   first_ = AlignedBuffer<std::uint32_t>(runs + 1);
@@ -69,18 +83,13 @@ MergedRuns::MergedRuns(refs::ReferenceSet&& set, std::uint32_t most, double grow
   runs_.primitive_count = runs;
   runs_.bounds = whole.bounds;
   runs_.primitives = refs::box_primitives();
-  executor.for_chunks(count, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    std::size_t run = runs_before[chunk];
-    for_runs(references, begin, end, most, float(growth), [&](std::size_t first, std::size_t, const Box& box) {
-      runs_.references[run] = {box.lower, std::uint32_t(run), box.upper, 0};
-      first_[run++] = std::uint32_t(first);
-    });
+  executor.for_chunks(count, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t) {
+    for (std::size_t run = runs_before[chunk]; run < runs_before[chunk + 1]; ++run) {
+      const std::size_t from = begin + run - runs_before[chunk];
+      runs_.references[run] = {references[from].lower, std::uint32_t(run), references[from].upper, 0};
+      first_[run] = first_of_run[from];
+    }
   });
-  bool all_numbered = true;
-  for (const std::uint8_t same : numbered) all_numbered &= same != 0;
-  if (all_numbered) return;
-  primitives_ = AlignedBuffer<std::uint32_t>(count);
-  for (std::size_t i = 0; i < count; ++i) primitives_[i] = references[i].primitive;
 }
 
 void MergedRuns::expand(tree::BinaryTree& tree, Executor& executor) const {

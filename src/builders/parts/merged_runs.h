@@ -26,8 +26,8 @@ class MergedRuns {
  public:
   /// Takes runs of up to `most` references, each as long as the box around it has at most `growth` times the area of
   /// its references' boxes, added. Parts of one primitive are not put together again. O(n), parallel, the same runs for
-  /// every number of threads.
-  MergedRuns(refs::ReferenceSet&& set, std::uint32_t most, double growth, Executor& executor);
+  /// every number of threads. `numbered`: each reference's primitive has the reference's own number.
+  MergedRuns(refs::ReferenceSet&& set, bool numbered, std::uint32_t most, double growth, Executor& executor);
 
   /// One reference for each run, over as many primitives.
   refs::ReferenceSet take_set() { return std::move(runs_); }

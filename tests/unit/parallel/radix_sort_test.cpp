@@ -64,6 +64,23 @@ TEST(RadixSort, sorts_what_is_sorted_and_what_is_reversed) {
   expect_like_stable_sort(items, 63, executor);
 }
 
+TEST(RadixSort, sorts_long_keys_whatever_share_of_them_is_alike_in_front) {
+  const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 8);
+  ThreadExecutor executor(8);
+  std::mt19937 random(5);
+  // Of 63 bits 36 are sorted first: here some of the items have them in common, in groups of some size.
+  for (const std::size_t group : {2, 30, 33, 300, 3'000, 20'000, 60'000})
+    for (const std::size_t every : {1, 3, 12, 100}) {
+      SCOPED_TRACE(std::to_string(group) + " alike, in one of " + std::to_string(every) + " places");
+      auto items = random_items(60'000, ~0ull >> 1, std::uint32_t(group + every));
+      for (std::size_t i = 0; i < items.size(); ++i)
+        if (i / group % every == 0) items[i].key = (items[i / group * group].key & ~0ull << 27) | (random() & 0xffff);
+      std::shuffle(items.begin(), items.end(), random);
+      for (std::size_t i = 0; i < items.size(); ++i) items[i].index = std::uint32_t(i);
+      expect_like_stable_sort(items, 63, executor);
+    }
+}
+
 TEST(RadixSort, does_not_depend_on_the_executor) {
   const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 8);
   for (const int threads : {1, 2, 8}) {
