@@ -91,8 +91,9 @@ namespace memory {
 void* allocate(std::size_t bytes, std::size_t alignment);
 /// Gives back what `allocate` gave for the same two numbers; null is allowed.
 void release(void* block, std::size_t bytes, std::size_t alignment) noexcept;
-/// `release` keeps large blocks, at most 64 MiB of them in a process, for the next arrays of their size, so that a tree
-/// that is built again and again takes its memory from the system once. This gives them to the system. From any thread.
+/// `release` keeps blocks of 8 KiB and more, at most 128 MiB of them in a process, for the next arrays of their size,
+/// so that a tree that is built again and again takes its memory from the system once. This gives them to the system.
+/// From any thread.
 void give_back_unused() noexcept;
 
 /// For standard containers whose memory shall come from `allocate`.

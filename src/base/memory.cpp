@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kHugePage = std::size_t{1} << 21;
 constexpr std::size_t kWorthAPage = kHugePage / 4;
 /// Smaller blocks come from what the process has anyway.
-constexpr std::size_t kWorthKeeping = std::size_t{1} << 15;
+constexpr std::size_t kWorthKeeping = std::size_t{1} << 13;
 constexpr std::size_t kPage = std::size_t{1} << 12;
 
 /// How many bytes of a block are to be huge pages: all but a rest that isn't worth one.
@@ -74,15 +74,15 @@ class KeptBlocks {
 
   /// Keeps a block, or gives it to the system, so that `most` bytes at most are kept, those of the oldest blocks last.
   void keep(void* block, std::size_t size, std::size_t alignment, std::size_t most) noexcept {
+    if (size > most) return Kept{block, size, alignment}.give_back();
+    Kept displaced;
     {
       const std::lock_guard lock(mutex_);
-      if (size <= most && blocks_.size() < kMostBlocks) {
-        blocks_.push_back({block, size, alignment});
-        bytes_ += size;
-        block = nullptr;
-      }
+      if (blocks_.size() == kMostBlocks) displaced = take_oldest();
+      blocks_.push_back({block, size, alignment});
+      bytes_ += size;
     }
-    if (block) ::operator delete(block, std::align_val_t(alignment));
+    displaced.give_back();
     shrink_to(most);
   }
 
@@ -92,20 +92,29 @@ class KeptBlocks {
       {
         const std::lock_guard lock(mutex_);
         if (bytes_ <= most || blocks_.empty()) return;
-        oldest = blocks_.front();
-        blocks_.erase(blocks_.begin());
-        bytes_ -= oldest.size;
+        oldest = take_oldest();
       }
-      ::operator delete(oldest.block, std::align_val_t(oldest.alignment));  // without the lock: it can take long
+      oldest.give_back();  // without the lock: it can take long
     }
   }
 
  private:
   static constexpr std::size_t kMostBlocks = 256;
   struct Kept {
-    void* block;
-    std::size_t size, alignment;
+    void* block = nullptr;
+    std::size_t size = 0, alignment = 1;
+
+    void give_back() const noexcept {
+      if (block) ::operator delete(block, std::align_val_t(alignment));
+    }
   };
+  Kept take_oldest() {
+    const Kept oldest = blocks_.front();
+    blocks_.erase(blocks_.begin());
+    bytes_ -= oldest.size;
+    return oldest;
+  }
+
   std::mutex mutex_;
   std::vector<Kept> blocks_ = [] {
     std::vector<Kept> blocks;
@@ -131,7 +140,7 @@ KeptBlocks& kept_blocks() {
 #ifdef BOXWOOD_KEEPS_NO_BLOCKS
 constexpr std::size_t kMostKept = 0;  // a block in use after it was given back must be seen
 #else
-constexpr std::size_t kMostKept = std::size_t{64} << 20;
+constexpr std::size_t kMostKept = std::size_t{128} << 20;
 #endif
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "builders/parts/box4.h"
 #include "builders/parts/merged_runs.h"
 #include "builders/parts/option_specs.h"
 
@@ -14,11 +15,9 @@ constexpr std::size_t kChunk = 1 << 14;
 
 /// A box that holds something and can be calculated with.
 bool is_usable(const refs::Reference& reference, std::size_t primitive_count) {
-  bool usable = reference.primitive < primitive_count;
-  for (int axis = 0; axis < 3; ++axis)
-    usable &= -kLargestCoordinate <= reference.lower[axis] && reference.lower[axis] <= reference.upper[axis] &&
-              reference.upper[axis] <= kLargestCoordinate;
-  return usable;
+  const Box4 box = Box4::of(reference);
+  return reference.primitive < primitive_count && all_at_most(Float4::fill(-kLargestCoordinate), box.lower) &&
+         all_at_most(box.lower, box.upper) && all_at_most(box.upper, Float4::fill(kLargestCoordinate));
 }
 
 struct Checked {

@@ -56,6 +56,10 @@ inline Float4 operator|(Float4 a, Float4 b) {
 inline Float4 less(Float4 a, Float4 b) {
   return {_mm_cmplt_ps(a.v, b.v)};
 }
+/// Is a <= b in lanes 0 to 2? Nothing is with a NaN.
+inline bool all_at_most(Float4 a, Float4 b) {
+  return (_mm_movemask_ps(_mm_cmple_ps(a.v, b.v)) & 7) == 7;
+}
 /// Are lanes 0 to 2 within +-limit? NaNs are not.
 inline bool all_within(Float4 v, float limit) {
   const __m128 size = _mm_andnot_ps(_mm_set1_ps(-0.0f), v.v);
@@ -159,6 +163,9 @@ inline Float4 less(Float4 a, Float4 b) {
     std::memcpy(&mask.v[i], &bits, 4);
   }
   return mask;
+}
+inline bool all_at_most(Float4 a, Float4 b) {
+  return a.v[0] <= b.v[0] && a.v[1] <= b.v[1] && a.v[2] <= b.v[2];
 }
 inline bool all_within(Float4 v, float limit) {
   const auto within = [limit](float x) { return x <= limit && x >= -limit; };

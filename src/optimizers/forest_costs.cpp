@@ -148,7 +148,7 @@ class Programme {
     double whole = node_area * node_cost_ + opened.of[std::size_t(opened.last)];
     if (subtree.count <= largest_leaf_) {
       // The fewest blocks first: most subtrees that are no leaf are none at any number.
-      double leaf = node_area * double(divide_up(subtree.count, block_));
+      double leaf = node_area * double(blocks_by_count(subtree.count));
       if (leaf <= whole && leaf_blocks_) leaf = node_area * double(blocks_of(subtree.first, subtree.count));
       if (leaf <= whole) whole = leaf, choice.set_leaf();
     }
@@ -168,9 +168,12 @@ class Programme {
     return node_weights_.empty() ? area(tree_.nodes[n].bounds) : double(node_weights_[n]);
   }
 
+  /// In 32 bits: divisions by 64-bit numbers take long.
+  std::uint32_t blocks_by_count(std::uint32_t count) const { return (count + block_ - 1) / block_; }
+
   /// Blocks of a leaf, or of all chunks of one above the limit.
   std::uint64_t blocks_of(std::uint32_t first, std::uint32_t count) const {
-    if (!leaf_blocks_) return divide_up(count, block_);
+    if (!leaf_blocks_) return blocks_by_count(count);
     const std::span<const std::uint32_t> all = tree_.references.span();
     std::uint64_t blocks = 0;
     for (std::uint32_t done = 0; done < count; done += largest_leaf_)
@@ -180,10 +183,10 @@ class Programme {
 
   void price_leaf(double node_area, std::uint32_t first, std::uint32_t count, Costs& costs) const {
     const double blocks = double(blocks_of(first, count));
-    const std::uint64_t chunks = divide_up(count, largest_leaf_);
     costs.of[1] = node_area * blocks;
     costs.last = 1;
-    if (chunks <= 1) return;
+    if (count <= largest_leaf_) return;
+    const std::uint64_t chunks = divide_up(count, largest_leaf_);
     for (int trees = 1; trees <= width_; ++trees) {
       const double nodes = double(chunk_nodes(chunks, std::uint64_t(trees), std::uint64_t(width_)));
       costs.of[std::size_t(trees)] = node_area * (blocks + node_cost_ * nodes);
@@ -208,7 +211,7 @@ class Programme {
       opened.of[std::size_t(trees)] = cost;
       if (trees > 2) choice.set_left_trees(trees, best);
     }
-    for (int trees = std::max(3, all + 1); trees <= width_; ++trees) choice.set_left_trees(trees, left.last);
+    if (all < width_) choice.set_left_trees_from(std::max(3, all + 1), left.last);
     return choice;
   }
 

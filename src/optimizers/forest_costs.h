@@ -16,6 +16,11 @@ inline constexpr int kLargestWidth = 16;
 class Choice {
  public:
   void set_left_trees(int trees, int left) { bits_ |= std::uint64_t(left) << (4 * (trees - 3)); }
+  /// The same for all forests from `first` trees (3 at least) on.
+  void set_left_trees_from(int first, int left) {
+    constexpr std::uint64_t all = 0x11111111111111;
+    bits_ |= (all << (4 * (first - 3)) & all) * std::uint64_t(left);
+  }
   void set_opened_from(int trees) { bits_ |= std::uint64_t(trees - 1) << 56; }
   void set_leaf() { bits_ |= std::uint64_t{1} << 60; }
 

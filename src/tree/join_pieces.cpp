@@ -67,8 +67,7 @@ void place(LargeVector<Placed>& nodes) {
   }
 }
 
-void write(const Placed& placed, std::span<const Node> slots, std::span<const std::uint32_t> references,
-           BinaryTree& tree) {
+void write(const Placed& placed, std::span<const std::uint32_t> references, BinaryTree& tree) {
   const TopNode& top = *placed.from;
   const std::uint32_t children = 2 * placed.rank + 1;
   if (placed.right != 0) {
@@ -82,15 +81,15 @@ void write(const Placed& placed, std::span<const Node> slots, std::span<const st
   };
   tree.nodes[placed.output] = moved(top.root);
   Node* const out = tree.nodes.data() + children;
-  for (std::uint32_t n = 0; n < 2 * top.inner; ++n) out[n] = moved(slots[top.root.first + n]);
+  for (std::uint32_t n = 0; n < 2 * top.inner; ++n) out[n] = moved(top.pairs[n]);
   std::copy_n(references.begin() + top.first_reference, top.reference_count,
               tree.references.begin() + placed.first_reference);
 }
 
 }  // namespace
 
-BinaryTree join_pieces(std::span<const TopNode> top, std::uint32_t root, std::span<const Node> slots,
-                       std::span<const std::uint32_t> references, std::size_t primitive_count, Executor& executor) {
+BinaryTree join_pieces(std::span<const TopNode> top, std::uint32_t root, std::span<const std::uint32_t> references,
+                       std::size_t primitive_count, Executor& executor) {
   LargeVector<Placed> placed = in_preorder(top, root);
   place(placed);
   BinaryTree tree;
@@ -98,7 +97,7 @@ BinaryTree join_pieces(std::span<const TopNode> top, std::uint32_t root, std::sp
   tree.nodes = AlignedBuffer<Node>(2 * std::size_t{placed[0].inner} + 1);
   tree.references = AlignedBuffer<std::uint32_t>(placed[0].references);
   executor.for_chunks(placed.size(), kPiecesPerChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) write(placed[i], slots, references, tree);
+    for (std::size_t i = begin; i < end; ++i) write(placed[i], references, tree);
   });
   return tree;
 }

@@ -69,8 +69,7 @@ Result<tree::BinaryTree> build_hlbvh(refs::ReferenceSet&& set, const OptionValue
 
   order = {};  // not needed any more, and the tree needs the memory
   set.references = {};
-  auto tree =
-      tree::join_pieces(top, *root, emitter.slots(), emitter.primitives(), set.primitive_count, context.executor);
+  auto tree = tree::join_pieces(top, *root, emitter.primitives(), set.primitive_count, context.executor);
   monitor.finish(1);
   return tree;
 }

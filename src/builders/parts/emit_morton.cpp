@@ -15,6 +15,8 @@
 // heuristic. O(n log n).
 #include "builders/parts/emit_morton.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 
 #include "builders/parts/box4.h"
@@ -71,14 +73,15 @@ struct MortonEmitter::Writer {
     std::uint64_t step;
   };
 
-  explicit Writer(MortonEmitter& emitter)
+  Writer(MortonEmitter& emitter, std::uint32_t references_at_most)
       : order(emitter.order_),
         references(emitter.references_),
         largest_leaf(emitter.leaves_.largest == 0 ? ~std::uint32_t{0} : emitter.leaves_.largest),
         traversal(double(emitter.leaves_.cost.traversal)),
         intersection(double(emitter.leaves_.cost.intersection)),
-        slots(emitter.slots_.data()),
-        primitives(emitter.primitives_.data()) {}
+        primitives(emitter.primitives_.data()),
+        pairs(2 * std::size_t{references_at_most}),
+        next(2 * references_at_most) {}
 
   Subtree leaf(std::uint32_t position) const {
     const refs::Reference& reference = references[order[position].index];
@@ -117,8 +120,8 @@ struct MortonEmitter::Writer {
       return whole;
     }
     next -= 2;
-    left.store(slots[next]);
-    right.store(slots[next + 1]);
+    left.store(pairs[next]);
+    right.store(pairs[next + 1]);
     whole.first = next;
     return whole;
   }
@@ -135,8 +138,7 @@ struct MortonEmitter::Writer {
   /// place belongs together. That is the tree that division from the top makes, without a search for each place.
   Subtree make(MortonRange whole) {
     const auto differs_lower = [](std::uint64_t a, std::uint64_t b) { return a < b && a < (a ^ b); };
-    next = 2 * whole.last;
-    waiting.clear();
+    std::size_t top = 0;
     Subtree subtree;
     for (std::uint32_t last = whole.last, first; last > whole.first; last = first) {
       const std::uint64_t key = order[last - 1].key;
@@ -145,11 +147,11 @@ struct MortonEmitter::Writer {
       subtree = make_equal({first, last});
       const std::uint64_t step = first > whole.first ? key ^ order[first - 1].key : ~std::uint64_t{0};
       std::uint32_t end = last;
-      for (; !waiting.empty() && differs_lower(waiting.back().step, step); waiting.pop_back()) {
-        end = waiting.back().last;
-        subtree = finish(first, end, subtree, waiting.back().subtree);
+      for (; top > 0 && differs_lower(waiting[top - 1].step, step); --top) {
+        end = waiting[top - 1].last;
+        subtree = finish(first, end, subtree, waiting[top - 1].subtree);
       }
-      waiting.push_back({subtree, end, step});
+      waiting[top++] = {subtree, end, step};
     }
     return subtree;
   }
@@ -158,11 +160,12 @@ struct MortonEmitter::Writer {
   std::span<const refs::Reference> references;
   std::uint32_t largest_leaf;
   double traversal, intersection;
-  tree::Node* slots;
   std::uint32_t* primitives;
   Float4 mask = xyz_mask();
-  std::uint32_t next = 0;  ///< slots from here on to the range's end are taken
-  std::vector<Waiting> waiting;
+  /// Room for two nodes per reference, of which leaves of several leave most free: so it is small and used again.
+  AlignedBuffer<tree::Node> pairs;
+  std::uint32_t next = 0;           ///< nodes from here on are made
+  std::array<Waiting, 64> waiting;  ///< each step's highest bit is lower than that of the one below
 };
 
 std::uint32_t MortonEmitter::middle(MortonRange range) const {
@@ -224,15 +227,23 @@ LargeVector<std::uint32_t> MortonEmitter::emit(std::span<const MortonRange> rang
     node.first_reference = split.range.first;
     node.reference_count = split.range.size();
   };
+  pairs_.resize(works.size() - 1);
   executor.for_chunks(works.size() - 1, 1, [&](std::size_t work, std::size_t, std::size_t) {
-    Writer writer(*this);
-    for (std::size_t t = works[work]; t < works[work + 1]; ++t) {
+    const std::span<const Split> own = std::span(tasks).subspan(works[work], works[work + 1] - works[work]);
+    Writer writer(*this, own.back().range.last - own.front().range.first);
+    for (const Split& task : own) {
       if (cancel_ && cancel_->load(std::memory_order_relaxed)) return;
-      place(tasks[t], writer.make(tasks[t].range));
+      place(task, writer.make(task.range));
     }
+    const std::span<const tree::Node> pairs = writer.pairs.span().subspan(writer.next);
+    pairs_[work] = AlignedBuffer<tree::Node>(pairs.size());
+    std::copy(pairs.begin(), pairs.end(), pairs_[work].begin());
+    for (const Split& task : own)
+      if (tree::TopNode& node = top[task.node]; node.inner > 0)
+        node.pairs = pairs_[work].data() + (node.root.first - writer.next);
   });
 
-  const Writer writer(*this);
+  const Writer writer(*this, 0);
   for (std::size_t s = splits.size(); s-- > 0;) {
     tree::TopNode& node = top[splits[s].node];
     Subtree whole = writer.over(made[node.left], made[node.right]);

@@ -32,21 +32,15 @@ class MortonEmitter {
   /// `cancel` may be null.
   MortonEmitter(std::span<const KeyedIndex> order, std::span<const refs::Reference> references, const Leaves& leaves,
                 const std::atomic<bool>* cancel)
-      : order_(order),
-        references_(references),
-        leaves_(leaves),
-        slots_(2 * order.size()),
-        primitives_(order.size()),
-        cancel_(cancel) {}
+      : order_(order), references_(references), leaves_(leaves), primitives_(order.size()), cancel_(cancel) {}
 
   /// Makes a subtree for each range; the ranges must not overlap. Appends to `top`, which must have a node already, and
-  /// returns the numbers that the subtrees' roots have there. Parallel within and across ranges. When the build is
+  /// returns the numbers that the subtrees' roots have there. The pieces are good as long as the emitter; to be called
+  /// once. Parallel within and across ranges. When the build is
   /// cancelled on the way, the subtrees are not all there.
   LargeVector<std::uint32_t> emit(std::span<const MortonRange> ranges, LargeVector<tree::TopNode>& top,
                                   Executor& executor);
 
-  /// What the pieces point to.
-  std::span<const tree::Node> slots() const { return slots_.span(); }
   /// The primitives of the references in their sorted order, where subtrees have been made.
   std::span<const std::uint32_t> primitives() const { return primitives_.span(); }
 
@@ -59,7 +53,7 @@ class MortonEmitter {
   std::span<const KeyedIndex> order_;
   std::span<const refs::Reference> references_;
   Leaves leaves_;
-  AlignedBuffer<tree::Node> slots_;
+  std::vector<AlignedBuffer<tree::Node>> pairs_;  ///< what the pieces point to
   AlignedBuffer<std::uint32_t> primitives_;
   const std::atomic<bool>* cancel_;
 };

@@ -71,9 +71,9 @@ TEST(Memory, BlocksInUseAreNeverShared) {
 
 TEST(Memory, MoreThanIsKeptIsGivenBackAndCanBeTakenAgain) {
   std::vector<AlignedBuffer<std::uint8_t>> buffers;
-  for (int i = 0; i < 12; ++i) buffers.emplace_back(16 * kMiB);  // 192 MiB, three times what is kept
+  for (int i = 0; i < 12; ++i) buffers.emplace_back(32 * kMiB);  // 384 MiB, three times what is kept
   buffers.clear();
-  AlignedBuffer<std::uint8_t> next(16 * kMiB);
+  AlignedBuffer<std::uint8_t> next(32 * kMiB);
   next[next.size() - 1] = 1;
   memory::give_back_unused();
   EXPECT_EQ(next[next.size() - 1], 1) << "what is in use is not given back";

@@ -23,6 +23,7 @@ class TakenApart {
         inner_[n] = 1 + inner_[node.first] + inner_[node.first + 1];
     top.resize(1);
     root = take(0);
+    for (const auto& [node, slot] : first_pair_) top[node].pairs = slots.data() + slot;
   }
 
   std::vector<tree::TopNode> top;
@@ -65,6 +66,7 @@ class TakenApart {
     for (std::uint32_t i = 0; i < 2 * inner_[n]; ++i) slots.push_back(moved(tree_.nodes[pairs + i]));
     for (std::uint32_t i = 0; i < count; ++i) references.push_back(tree_.references[first + i]);
     top.push_back({.root = moved(whole), .inner = inner_[n], .first_reference = reference, .reference_count = count});
+    first_pair_.push_back({top.size() - 1, slot});
     return std::uint32_t(top.size() - 1);
   }
 
@@ -72,6 +74,7 @@ class TakenApart {
   std::uint32_t most_;
   std::mt19937 random_;
   std::vector<std::uint32_t> inner_;
+  std::vector<std::pair<std::size_t, std::uint32_t>> first_pair_;
 };
 
 TEST(JoinPieces, GivesTheTreeThatWasTakenApart) {
@@ -84,7 +87,7 @@ TEST(JoinPieces, GivesTheTreeThatWasTakenApart) {
       for (const int threads : {1, 2, 8}) {
         ThreadExecutor executor(threads);
         const tree::BinaryTree joined =
-            tree::join_pieces(apart.top, apart.root, apart.slots, apart.references, tree.primitive_count, executor);
+            tree::join_pieces(apart.top, apart.root, apart.references, tree.primitive_count, executor);
         ASSERT_EQ(joined.nodes.size(), tree.nodes.size());
         EXPECT_EQ(joined.primitive_count, tree.primitive_count);
         EXPECT_EQ(tree::hash(joined), tree::hash(tree)) << leaves << " leaves, at most " << most;
@@ -107,7 +110,7 @@ TEST(JoinPieces, NeedsNoStackForChains) {
   }
   SequentialExecutor executor;
   const tree::BinaryTree joined =
-      tree::join_pieces(top, number[0], {}, tree.references.span(), tree.primitive_count, executor);
+      tree::join_pieces(top, number[0], tree.references.span(), tree.primitive_count, executor);
   EXPECT_EQ(tree::hash(joined), tree::hash(tree));
 }
 
