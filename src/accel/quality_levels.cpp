@@ -13,7 +13,7 @@ using Setting = std::pair<const char*, const char*>;
 /// (docs/best-tree.md).
 constexpr Setting kFastSettings[] = {
     {"cost.intersection", "0.2"}, {"merge.most", "2"}, {"merge.growth", "1"}, {"treelet.bits", "12"}};
-constexpr Setting kBalancedSettings[] = {{"cost.intersection", "0.5"}, {"merge.most", "2"}};
+constexpr Setting kBalancedSettings[] = {{"cost.intersection", "0.4"}, {"merge.most", "2"}, {"merge.growth", "1"}};
 
 /// Planes where the sides overlap by less than a thousandth of the root's area cost the builder two fifths of its time
 /// for 0.6 % fewer nodes and triangles per ray (docs/best-tree.md).
