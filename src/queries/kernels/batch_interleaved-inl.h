@@ -76,7 +76,7 @@ HWY_INLINE VI sort_descending(VI v) {
 template <int W, class Leaf, bool kRobust, bool kAny>
 class Interleaved {
  public:
-  static constexpr std::uint32_t kFlights = 16;
+  static constexpr std::uint32_t kFlights = 32;
 
   Interleaved(const Layout& layout, const Ray* rays, std::size_t count, Hit* hits, Vec3* normals,
               std::uint8_t* occluded)
