@@ -27,7 +27,7 @@ constexpr QualityLevel kLevels[] = {
      .settings = kFastSettings,
      .optimizer = "none",
      .second_builder = nullptr,
-     .build_cost = "0.65 on one thread, 0.85 on two",
+     .build_cost = "0.65 on one thread, 0.75 on two",
      .memory = "about that of balanced"},
     {.id = "balanced",
      .summary = "the default: quick to build, good to trace",
@@ -37,7 +37,7 @@ constexpr QualityLevel kLevels[] = {
      .optimizer = "none",
      .second_builder = nullptr,
      .build_cost = "1",
-     .memory = "48 to 56 bytes per triangle"},
+     .memory = "43 to 56 bytes per triangle"},
     {.id = "best",
      .summary = "for trees that are traced for long",
      .presplit = "none",
@@ -45,8 +45,8 @@ constexpr QualityLevel kLevels[] = {
      .settings = kBestSettings,
      .optimizer = "reinsertion",
      .second_builder = "sweep-sah",
-     .build_cost = "8 to 20",
-     .memory = "1.02 to 1.12 times balanced"},
+     .build_cost = "7 to 26",
+     .memory = "1.03 to 1.15 times balanced"},
 };
 
 std::string known_levels() {
