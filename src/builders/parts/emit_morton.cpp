@@ -2,8 +2,8 @@
 // range is divided where the highest bit that is not the same in all its codes changes; a range of equal codes is
 // divided in the middle. So the depth is at most 63 plus the logarithm of the largest number of equal codes. Unlike
 // Karras' tree, which gives every node a thread, ranges are divided from the top, by bisection, until they are small;
-// the small ones are the parallel tasks, each made in one go in linear time. How it is cut depends on the
-// ranges only, so all thread counts give equal bits.
+// the small ones are the parallel tasks, each made in one go in linear time. How it is cut depends on the ranges only,
+// so all thread counts give equal bits.
 //
 // A small range is made from its last reference to its first. A node is finished when both of its children are, the
 // right one first; so when each pair of children is written in front of the pairs before it, a subtree stands in
@@ -38,8 +38,7 @@ Box4 merge(const Box4& a, const Box4& b) {
 
 }  // namespace
 
-/// The top node of a range, the position that divides it, and the number of its left child; position 0: not divided, a
-/// task of its own.
+/// A range, the position that divides it (0: not divided, a task of its own), and the number of its top node.
 struct MortonEmitter::Split {
   MortonRange range;
   std::uint32_t middle;
@@ -50,7 +49,7 @@ struct MortonEmitter::Split {
 struct MortonEmitter::Subtree {
   Box4 box;  ///< fourth lanes are zero
   double cost;
-  std::uint32_t first;  ///< a leaf's position, or the slot of its children
+  std::uint32_t first;  ///< a leaf's position, or where the writer has its children
   std::uint32_t count;  ///< references of a leaf, 0: not a leaf
   std::uint32_t inner;
 

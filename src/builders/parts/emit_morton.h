@@ -34,10 +34,10 @@ class MortonEmitter {
                 const std::atomic<bool>* cancel)
       : order_(order), references_(references), leaves_(leaves), primitives_(order.size()), cancel_(cancel) {}
 
-  /// Makes a subtree for each range; the ranges must not overlap. Appends to `top`, which must have a node already, and
-  /// returns the numbers that the subtrees' roots have there. The pieces are good as long as the emitter; to be called
-  /// once. Parallel within and across ranges. When the build is
-  /// cancelled on the way, the subtrees are not all there.
+  /// Makes a subtree for each range; the ranges are in order and do not overlap. Appends to `top`, which must have a
+  /// node already, and returns the numbers that the subtrees' roots have there. The pieces are good as long as the
+  /// emitter; to be called once. Parallel within and across ranges. When the build is cancelled on the way, the
+  /// subtrees are not all there.
   LargeVector<std::uint32_t> emit(std::span<const MortonRange> ranges, LargeVector<tree::TopNode>& top,
                                   Executor& executor);
 
