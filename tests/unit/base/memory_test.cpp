@@ -23,9 +23,6 @@ std::uintptr_t allocate_and_release(std::size_t bytes) {
 }
 
 TEST(Memory, ALargeBlockServesTheNextArrayOfItsSize) {
-#ifndef __linux__
-  GTEST_SKIP() << "blocks are kept on Linux only";
-#endif
   if (test::kInstrumented) GTEST_SKIP() << "a sanitizer must see every release";
   memory::give_back_unused();
   const std::uintptr_t block = allocate_and_release(3 * kMiB);
