@@ -55,14 +55,14 @@ std::vector<Ray> rays_through(const TriangleMesh& mesh, const Box& bounds, std::
 
 Case make_case(const char* scene) {
   Case c;
-  c.mesh = mesh::make_scene(scene, {.triangles = test::effort(2000, 4), .seed = 7, .rotate = {30, 40, 20}})->mesh;
+  c.mesh = mesh::make_scene(scene, {.triangles = test::effort(2000, 8), .seed = 7, .rotate = {30, 40, 20}})->mesh;
   const MeshView view = c.mesh;
   Box bounds;
   for (std::uint32_t i = 0; i < view.triangle_count; ++i) {
     c.boxes.push_back(view.triangle(i).bounds());
     bounds.grow(c.boxes.back());
   }
-  c.rays = rays_through(c.mesh, bounds, test::effort(2000, 2));
+  c.rays = rays_through(c.mesh, bounds, test::effort(2000, 4));
   c.hits.resize(c.rays.size());
   EXPECT_TRUE(Accel::from_tree(view, one_leaf(c.boxes))->closest_hits(c.rays, c.hits));
   return c;

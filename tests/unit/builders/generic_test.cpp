@@ -4,6 +4,7 @@
 #include "boxwood/builders.h"
 #include "boxwood/metrics.h"
 #include "builders/parts/configuration.h"
+#include "support/effort.h"
 #include "unit/builders/reference_shapes.h"
 
 namespace boxwood {
@@ -84,7 +85,7 @@ TEST(Geometric, BothWaysToCountGiveTheSameTree) {
 }
 
 TEST(Geometric, EveryOptionChangesTheTree) {
-  const testing::Boxes boxes = testing::soup(1500, 6);
+  const testing::Boxes boxes = testing::soup(test::effort(1500, 3), 6);
   const std::uint64_t plain = tree::hash(build(boxes, "geometric", {}));
   for (const auto& [key, value] :
        Settings{{"cost", "recursive"}, {"exact.max", "6"}, {"grid.k", "512"}, {"grid.rule", "text"}})

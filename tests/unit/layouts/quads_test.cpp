@@ -130,7 +130,7 @@ TEST(Quads, LeavesArePricedByTheirQuads) {
 std::vector<Ray> rays_at(const TriangleMesh& mesh, const Box& box, std::uint64_t seed) {
   test::Random random(seed);
   const float size = length(box.upper - box.lower);
-  std::vector<Ray> rays(test::effort(4000, 4));
+  std::vector<Ray> rays(test::effort(4000, 16));
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const auto& t = mesh.triangles[random.index(mesh.triangles.size())];
     const Vec3 a = mesh.vertices[t[0]], b = mesh.vertices[t[1]], c = mesh.vertices[t[2]];

@@ -94,8 +94,8 @@ TEST(Kernels, AgreeWithBruteForceOnSoup) {
 }
 
 TEST(Kernels, AllVariantsGiveTheSameBits) {
-  const TriangleMesh mesh = test::soup(5000, 7);
-  const auto rays = random_rays(test::effort(20000, 10), 8);
+  const TriangleMesh mesh = test::soup(test::effort(5000, 4), 7);
+  const auto rays = random_rays(test::effort(20000, 40), 8);
   for (Mode mode : {Mode::robust, Mode::fast}) {
     const auto expected = trace(make(mesh, {"linear", "scalar"}), rays, mode);
     for (const Variant& variant : variants())
@@ -110,7 +110,7 @@ TEST(Kernels, AllVariantsGiveTheSameBits) {
 // Rays that start a hair above large triangles and graze them: whether a triangle behind the origin is taken for one in
 // front must not depend on which boxes a tree happens to open.
 TEST(Kernels, RaysFromSurfacesDoNotDependOnTheBuilder) {
-  const auto scene = mesh::make_scene("atrium", {.triangles = 20000});
+  const auto scene = mesh::make_scene("atrium", {.triangles = test::effort(20000, 8)});
   ASSERT_TRUE(scene);
   const int size = static_cast<int>(test::effort(300, 8));
   const auto primary = render::primary_rays(scene->view, size, size);
@@ -125,7 +125,7 @@ TEST(Kernels, RaysFromSurfacesDoNotDependOnTheBuilder) {
 
 TEST(Kernels, AnyHitAgreesWithClosestHit) {
   const TriangleMesh mesh = test::soup(3000, 9);
-  const auto rays = random_rays(test::effort(10000, 10), 10);
+  const auto rays = random_rays(test::effort(10000, 20), 10);
   for (const Variant& variant : variants()) {
     const Accel accel = make(mesh, variant);
     for (Mode mode : {Mode::robust, Mode::fast}) {
@@ -140,7 +140,7 @@ TEST(Kernels, AnyHitAgreesWithClosestHit) {
 
 TEST(Kernels, SingleCallsEqualBatchesAndCountsDoNotChangeHits) {
   const TriangleMesh mesh = test::soup(1000, 11);
-  const auto rays = random_rays(2000, 12);
+  const auto rays = random_rays(test::effort(2000, 4), 12);
   for (const Variant& variant : variants()) {
     const Accel accel = make(mesh, variant);
     const auto batch = trace(accel, rays, Mode::robust);
@@ -181,7 +181,7 @@ TEST(Kernels, RobustModeLosesNoRayInsideAClosedSurface) {
     for (const Variant& variant : variants()) {
       const Accel accel = make(mesh, variant);
       for (auto aim : {test::Aim::vertices, test::Aim::edges, test::Aim::random}) {
-        const auto rays = test::rays_from_inside(mesh, center, radius, aim, test::effort(10000, 10), 5);
+        const auto rays = test::rays_from_inside(mesh, center, radius, aim, test::effort(10000, 40), 5);
         std::size_t lost = 0;
         for (const Hit& hit : trace(accel, rays, Mode::robust)) lost += !hit;
         EXPECT_EQ(lost, 0u) << variant.layout << " " << variant.isa << " aim " << static_cast<int>(aim) << " radius "
@@ -215,7 +215,7 @@ TEST(Kernels, RaysParallelToAPlaneAtEveryScale) {
   for (float radius : {1e-30f, 1e-12f, 1e-4f, 1.0f, 1e6f, 1e15f}) {
     const TriangleMesh mesh = test::icosphere(3, radius);
     test::Random random(6);
-    std::vector<Ray> rays(3000);
+    std::vector<Ray> rays(test::effort(3000, 6));
     for (std::size_t i = 0; i < rays.size(); ++i) {
       rays[i] = {0.5f * radius * random.direction(), 0, random.direction(), kInfinity};
       rays[i].direction[static_cast<int>(i % 3)] = i % 2 ? 0.0f : -0.0f;

@@ -134,7 +134,7 @@ TEST(Render, EmptyMeshShowsTheBackgroundOnly) {
 TEST(Render, BackgroundExactlyWhereNothingIsHit) {
   const Accel accel = build(icosphere(2));
   const Accel nothing = build(TriangleMesh{});
-  const int width = 300, height = 250;  // more than one batch
+  const int width = 300, height = test::kInstrumented ? 40 : 250;  // 250: more than one batch
   const auto primary = *primary_rays(kFromAbove, width, height);
   for (const Shade shade : {Shade::normals, Shade::ao, Shade::ids}) {
     const Image image = picture(accel, kFromAbove, width, height, shade);
@@ -148,7 +148,7 @@ TEST(Render, BackgroundExactlyWhereNothingIsHit) {
       else
         ASSERT_FALSE(differs) << x << ' ' << y;
     }
-    EXPECT_GT(hits, 5000u);
+    EXPECT_GT(hits, test::effort(5000, 20));
     EXPECT_GT(changed, hits * 99 / 100);
   }
 }
@@ -281,10 +281,10 @@ TEST(Render, SameBitsOnEveryExecutor) {
   TriangleMesh mesh = icosphere(3);
   add_quad(mesh, {-3, -3, -1}, {6, 0, 0}, {0, 6, 0});
   const View view{.eye = {2, 2, 3}, .look_at = {0, 0, 0}, .fov = 50};
-  const int width = 320, height = 240;
+  const int width = test::kInstrumented ? 96 : 320, height = test::kInstrumented ? 72 : 240;
   for (const Shade shade : kAllShades) {
     const Image reference = picture(build(mesh, std::make_shared<SequentialExecutor>()), view, width, height, shade);
-    EXPECT_GT(colors(reference).size(), 20u);
+    EXPECT_GT(colors(reference).size(), test::effort(20, 4));
     for (const int threads : test::thread_counts())
       EXPECT_EQ(picture(build(mesh, std::make_shared<ThreadExecutor>(threads)), view, width, height, shade).rgb,
                 reference.rgb)
