@@ -116,6 +116,9 @@ inline constexpr std::uint32_t kNoNeighbour = 0xffffffffu;
 /// neighbour of the second, the third that of the fourth, and so on by their ids. Requires check_indices to have
 /// passed. Expected O(n), parallel, deterministic.
 AlignedBuffer<EdgeNeighbours> edge_neighbours(const MeshView& mesh, Weld weld, Executor& executor);
+/// Have two different triangles a side in common, whose ends are two vertices? Both must be among the mesh's triangles,
+/// and check_indices must have passed. Looks at these two alone.
+bool share_edge(const MeshView& mesh, std::size_t a, std::size_t b, Weld weld);
 
 // ---- Procedural scenes -------------------------------------------------------------------------------------------
 

@@ -49,6 +49,8 @@ class Primitives {
   virtual AlignedBuffer<mesh::EdgeLink> edge_links(mesh::Weld weld, Executor& executor) const;
   /// The neighbours of each primitive over its edges, as mesh::edge_neighbours gives them. By default nothing at all.
   virtual AlignedBuffer<mesh::EdgeNeighbours> edge_neighbours(mesh::Weld weld, Executor& executor) const;
+  /// Do two primitives share an edge, as mesh::share_edge says? By default no two do. Called from many threads at once.
+  virtual bool share_edge(std::uint32_t a, std::uint32_t b, mesh::Weld weld) const;
 };
 
 /// The primitives of a triangle mesh. Reads the mesh's arrays, which must outlive it. Only usable triangles may be

@@ -34,6 +34,10 @@ AlignedBuffer<mesh::EdgeNeighbours> Primitives::edge_neighbours(mesh::Weld, Exec
   return {};
 }
 
+bool Primitives::share_edge(std::uint32_t, std::uint32_t, mesh::Weld) const {
+  return false;
+}
+
 std::shared_ptr<const Primitives> box_primitives() {
   return std::make_shared<BoxPrimitives>();
 }

@@ -54,6 +54,9 @@ class TrianglePrimitives final : public Primitives {
   AlignedBuffer<mesh::EdgeNeighbours> edge_neighbours(mesh::Weld weld, Executor& executor) const override {
     return mesh::edge_neighbours(mesh_, weld, executor);
   }
+  bool share_edge(std::uint32_t a, std::uint32_t b, mesh::Weld weld) const override {
+    return mesh::share_edge(mesh_, a, b, weld);
+  }
 
  private:
   MeshView mesh_;

@@ -6,8 +6,8 @@
 namespace boxwood::tree {
 namespace {
 
-/// Pieces are small, so several are copied by one thread.
-constexpr std::size_t kPiecesPerChunk = 8;
+/// Where there are many pieces they are small, and a thread copies up to so many in one go.
+constexpr std::size_t kMostInOneGo = 8, kChunksWanted = 256;
 
 /// A top node, in preorder, with the size of its subtree and its place in the tree.
 struct Placed {
@@ -96,7 +96,8 @@ BinaryTree join_pieces(std::span<const TopNode> top, std::uint32_t root, std::sp
   tree.primitive_count = primitive_count;
   tree.nodes = AlignedBuffer<Node>(2 * std::size_t{placed[0].inner} + 1);
   tree.references = AlignedBuffer<std::uint32_t>(placed[0].references);
-  executor.for_chunks(placed.size(), kPiecesPerChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+  const std::size_t in_one_go = std::clamp<std::size_t>(placed.size() / kChunksWanted, 1, kMostInOneGo);
+  executor.for_chunks(placed.size(), in_one_go, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) write(placed[i], references, tree);
   });
   return tree;

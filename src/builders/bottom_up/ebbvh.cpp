@@ -20,6 +20,7 @@ namespace boxwood::builders {
 namespace {
 
 constexpr std::array<const char*, 2> kWelds{"position", "index"};
+constexpr std::array<const char*, 2> kSearches{"near", "all"};
 constexpr std::size_t kMostTops = 64;
 /// Rounds whose roots are noted one by one.
 constexpr std::size_t kNotedRounds = 8;
@@ -54,6 +55,12 @@ constexpr OptionSpec kWeldOption{
     .key = "weld",
     .description = "vertices are the same by position, or by index as the mesh has it (seams then divide clusters)",
     .choices = kWelds};
+constexpr OptionSpec kSearchOption{
+    .key = "search",
+    .description =
+        "where the one round below binned-sah looks for shared edges: near, among the six triangles that "
+        "follow in the mesh, or all; more rounds and other tops take all",
+    .choices = kSearches};
 constexpr OptionSpec kPairCutoffOption{
     .key = "pair_cutoff",
     .description = "the first round that merges fewer pairs is the last one (Houghton and Spoerer)",
@@ -97,9 +104,9 @@ OptionSpec top_option(const Tops& tops) {
 const Tops kTops("middle"), kGatedTops("binned-sah");
 const std::array<OptionSpec, 7> kOptions{kWeldOption,         top_option(kTops),   rounds_option(0), kPairCutoffOption,
                                          gate_area_option(0), gate_size_option(0), kLeafMaxOption};
-const std::array<OptionSpec, 7> kGatedOptions{kWeldOption,       top_option(kGatedTops), rounds_option(1),
-                                              kPairCutoffOption, gate_area_option(0.8),  gate_size_option(0),
-                                              kLeafMaxOption};
+const std::array<OptionSpec, 8> kGatedOptions{kWeldOption,         kSearchOption,     top_option(kGatedTops),
+                                              rounds_option(1),    kPairCutoffOption, gate_area_option(0.8),
+                                              gate_size_option(0), kLeafMaxOption};
 
 constexpr std::uint32_t kNone = kNoCluster;
 
@@ -268,21 +275,20 @@ Result<tree::BinaryTree> build_over_pairs(refs::ReferenceSet&& set, const Option
                                           const BuildContext& context) {
   const auto weld = static_cast<mesh::Weld>(options.choice("weld"));
   const std::size_t count = set.references.size();
-  EdgePairs pairs = pair_references(set, weld, options.number("gate.area"), context.executor);
+  const auto search = static_cast<PairSearch>(options.choice("search"));
+  EdgePairs pairs = pair_references(set, search, weld, options.number("gate.area"), context.executor);
   const std::size_t roots = pairs.pairs.size();
-  AlignedBuffer<tree::Node> nodes;
-  AlignedBuffer<std::uint32_t> ids;
+  TreePieces pieces;
   {
     ReferenceRanges ranges(std::move(pairs.set));
     const BuildRange root = ranges.root(context.executor);
     PairFinder finder(ranges, root, pairs, set.references.span(), options.cost(), options.integer(kLeafMax));
-    TopDownDriver<PairFinder> driver(finder, roots, context, kLargeRange, 2 * count, 2 * roots);
+    TopDownDriver<PairFinder> driver(finder, roots, context, kLargeRange, 2);
     if (!driver.run(root)) return cancelled_error();
-    nodes = std::move(driver.nodes());
-    ids = std::move(driver.ids());
+    pieces = std::move(driver.pieces());
   }
   set.references = {};
-  tree::BinaryTree tree = tree::canonicalize(nodes.span(), ids.span(), set.primitive_count, false, context.executor);
+  tree::BinaryTree tree = pieces.join(set.primitive_count, context.executor);
   tree.notes = {{"pairs of round 1", double(count - roots)},
                 {"roots after round 1", double(roots)},
                 {"rounds", 1},

@@ -12,7 +12,7 @@ struct BuildRange {
   Box4 bounds;
   Box4 centroids2;
   std::uint32_t first = 0, last = 0;
-  std::uint32_t slot = 0;    ///< where its node goes
+  std::uint32_t slot = 0;    ///< where its node goes, see top_down.h
   std::uint32_t depth = 0;   ///< of its node; the root's is 0
   std::uint32_t buffer = 0;  ///< which of the two buffers holds its references, for finders that have two
 

@@ -1,8 +1,11 @@
 // Each reference in turn, when it is still alone, takes the lonely neighbour with which its box grows least. Turns are
 // taken within chunks of a fixed number of references, which do not pair across their borders: chunks are independent.
+// Meshes name neighbours soon after each other more often than not, so a look at the next few references finds about as
+// many pairs as a table of all edges, in a tenth of the time.
 #include "builders/parts/edge_pairs.h"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "builders/parts/area_scale.h"
@@ -15,14 +18,19 @@ using refs::Reference;
 
 /// References that pair among themselves. Smaller ones would leave more of them alone.
 constexpr std::size_t kPairingChunk = std::size_t{1} << 14;
+/// References that a search nearby looks at: two steps of three. One step finds up to a tenth less, four no more.
+constexpr std::uint32_t kNear = 6;
 
 class Pairing {
  public:
-  Pairing(const refs::ReferenceSet& set, mesh::Weld weld, double growth, Executor& executor)
+  Pairing(const refs::ReferenceSet& set, PairSearch search, mesh::Weld weld, double growth, Executor& executor)
       : references_(set.references.span()),
-        growth_(growth > 0 ? float(growth) : kInfinity),
+        primitives_(*set.primitives),
+        near_(search == PairSearch::near),
+        weld_(weld),
+        growth_(growth > 0 ? float(growth) : std::numeric_limits<float>::max()),
         scale_(Float4::fill(area_scale(set.bounds)) & xyz_mask()),
-        neighbours_(set.primitives->edge_neighbours(weld, executor)),
+        neighbours_(near_ ? AlignedBuffer<mesh::EdgeNeighbours>() : primitives_.edge_neighbours(weld, executor)),
         items_(references_.size()) {
     name_references(set.primitive_count);
   }
@@ -32,12 +40,12 @@ class Pairing {
   /// Returns how many pairs and single references there are in the chunk.
   std::size_t run(std::uint32_t begin, std::uint32_t end) {
     for (std::uint32_t i = begin; i < end; ++i) items_[i].partner = kNoPartner;
-    if (neighbours_.empty()) return end - begin;
+    if (!near_ && neighbours_.empty()) return end - begin;
     measure(begin, end);
     std::size_t count = end - begin;
     for (std::uint32_t i = begin; i < end; ++i) {
       if (items_[i].partner != kNoPartner) continue;
-      const auto [best, parts_area] = best_neighbour(i, begin, end);
+      const auto [best, parts_area] = near_ ? best_of_next(i, end) : best_neighbour(i, begin, end);
       if (best == kNoPartner) continue;
       items_[i].area = items_[best].area = parts_area;
       items_[i].partner = best;
@@ -49,7 +57,6 @@ class Pairing {
 
   /// Writes what `run` counted: pairs in the order of their first references.
   void write(std::uint32_t begin, std::uint32_t end, std::uint32_t next, EdgePairs& out) const {
-    std::uint32_t rank = begin - next;  // each pair of two has made the numbers fall back by one
     for (std::uint32_t i = begin; i < end; ++i) {
       const std::uint32_t other = items_[i].partner;
       if (other < i) continue;
@@ -61,8 +68,7 @@ class Pairing {
         const Box box = merge(pair.box(), references_[other].box());
         pair = {box.lower, next, box.upper, std::bit_cast<std::uint32_t>(items_[i].area)};
       }
-      out.pairs[next++] = {i, other, rank};
-      rank += other != kNoPartner;
+      out.pairs[next++] = {i, other};
     }
   }
 
@@ -102,6 +108,37 @@ class Pairing {
     }
   }
 
+  /// Of the next references that may pair, without a branch until it comes to their edges: nothing here can be
+  /// foretold.
+  Neighbour best_of_next(std::uint32_t i, std::uint32_t end) const {
+    const Box4 box = Box4::of(references_[i]);
+    const auto next = [&](std::uint32_t k) { return std::min(i + 1 + k, end - 1); };
+    const auto joined = [&](std::uint32_t k) {
+      Box4 both = box;
+      both.grow(Box4::of(references_[next(k)]));
+      return both;
+    };
+    alignas(16) float area[kNear + 2];
+    for (std::uint32_t k = 0; k < kNear; k += 3)
+      areas(joined(k), joined(k + 1), joined(k + 2)).store_anywhere(area + k);
+    std::uint64_t order[kNear];  // growth, which is not negative, then k
+    for (std::uint32_t k = 0; k < kNear; ++k) {
+      const Item& item = items_[next(k)];
+      const bool alone = (i + 1 + k < end) & (item.partner == kNoPartner);
+      const float growth = growth_of(area[k], items_[i].area + item.area);
+      order[k] = std::uint64_t(std::bit_cast<std::uint32_t>(alone ? growth : kNever)) << 3 | k;
+    }
+    while (true) {
+      const std::uint64_t least = *std::min_element(order, order + kNear);
+      const auto k = std::uint32_t(least & 7);
+      const float growth = std::bit_cast<float>(std::uint32_t(least >> 3));
+      if (!(growth <= growth_)) return {kNoPartner, 0};
+      if (primitives_.share_edge(references_[i].primitive, references_[next(k)].primitive, weld_))
+        return {next(k), parts_area(growth)};
+      order[k] = std::uint64_t(std::bit_cast<std::uint32_t>(kNever)) << 3 | k;
+    }
+  }
+
   Neighbour best_neighbour(std::uint32_t i, std::uint32_t begin, std::uint32_t end) const {
     const Box4 box = Box4::of(references_[i]);
     Box4 joined[3] = {box, box, box};
@@ -120,16 +157,22 @@ class Pairing {
     Neighbour best{kNoPartner, 0};
     float best_growth = growth_;
     for (int k = 0; k < count; ++k) {
-      const float both = items_[i].area + items_[others[k]].area;
-      const float growth = both > 0 ? area[k] / both : 0;
+      const float growth = growth_of(area[k], items_[i].area + items_[others[k]].area);
       if (growth > best_growth || (growth == best_growth && others[k] >= best.reference)) continue;
-      best = {others[k], growth > 0 ? 1 / growth : 2};
+      best = {others[k], parts_area(growth)};
       best_growth = growth;
     }
     return best;
   }
 
+  static constexpr float kNever = std::numeric_limits<float>::infinity();  ///< more than any limit
+  static float growth_of(float joined, float both) { return both > 0 ? joined / both : 0; }
+  static float parts_area(float growth) { return growth > 0 ? 1 / growth : 2; }
+
   std::span<const Reference> references_;
+  const refs::Primitives& primitives_;
+  bool near_;
+  mesh::Weld weld_;
   float growth_;
   Float4 scale_;
   AlignedBuffer<mesh::EdgeNeighbours> neighbours_;
@@ -139,9 +182,10 @@ class Pairing {
 
 }  // namespace
 
-EdgePairs pair_references(const refs::ReferenceSet& set, mesh::Weld weld, double growth, Executor& executor) {
+EdgePairs pair_references(const refs::ReferenceSet& set, PairSearch search, mesh::Weld weld, double growth,
+                          Executor& executor) {
   const std::size_t count = set.references.size();
-  Pairing pairing(set, weld, growth, executor);
+  Pairing pairing(set, search, weld, growth, executor);
   std::vector<std::size_t> first((count + kPairingChunk - 1) / kPairingChunk + 1);
   executor.for_chunks(count, kPairingChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     first[chunk + 1] = pairing.run(std::uint32_t(begin), std::uint32_t(end));

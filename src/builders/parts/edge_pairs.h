@@ -15,7 +15,6 @@ inline constexpr std::uint32_t kNoPartner = 0xffffffffu;
 /// Two references, or one.
 struct ReferencePair {
   std::uint32_t first, second;  ///< second = kNoPartner: one only
-  std::uint32_t rank;           ///< how many pairs before this one have two
 };
 
 struct EdgePairs {
@@ -27,8 +26,13 @@ struct EdgePairs {
   static float parts_area(const refs::Reference& pair) { return std::bit_cast<float>(pair.reserved); }
 };
 
+/// Where partners are looked for: among the few references that follow, asking of each whether it shares an edge; or
+/// over all edges, by a table of them.
+enum class PairSearch { near, all };
+
 /// Two references become a pair when their primitives share an edge and the box around both has at most `growth` times
 /// the area of their boxes, added (0: whatever it has). O(n), parallel, the same pairs for every number of threads.
-EdgePairs pair_references(const refs::ReferenceSet& set, mesh::Weld weld, double growth, Executor& executor);
+EdgePairs pair_references(const refs::ReferenceSet& set, PairSearch search, mesh::Weld weld, double growth,
+                          Executor& executor);
 
 }  // namespace boxwood::builders

@@ -79,9 +79,10 @@ std::optional<std::uint32_t> join_treelets(std::span<const std::uint32_t> treele
   TopDownDriver<TreeletFinder> driver(finder, treelets.size(), quiet);
   if (!driver.run(whole)) return {};
 
-  const auto nodes = driver.nodes().span();
+  const tree::BinaryTree tree = driver.pieces().join(treelets.size(), context.executor);
+  const auto nodes = tree.nodes.span();
   const auto number = [&](const tree::Node& node) {
-    if (node.is_leaf()) return treelets[driver.ids()[node.first]];
+    if (node.is_leaf()) return treelets[tree.references[node.first]];
     top.push_back({.root = node});
     return std::uint32_t(top.size() - 1);
   };

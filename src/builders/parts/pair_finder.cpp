@@ -1,10 +1,6 @@
 // Trees over pairs of references. Ranges of more than a few pairs are binned, a pair counting as one reference of the
 // average price. For the last few all trees are tried, by dynamic programming over the subsets, with all leaves that
 // they can have: at most 25 splits are priced for four pairs, which takes less time than binning them once.
-//
-// Places: pair i of the final order has ids 2 * i and 2 * i + 1. The split at `mid` puts its children where the driver
-// puts them, at 2 * mid and 2 * mid + 1; those of a pair that is taken apart stand behind all of these, by the pair's
-// rank.
 #include "builders/parts/pair_finder.h"
 
 #include <algorithm>
@@ -39,7 +35,7 @@ PairFinder::PairFinder(ReferenceRanges& ranges, const BuildRange& root, const Ed
 /// Sets of the pairs of one range, as masks, and the best tree over each.
 class PairFinder::FewPairs {
  public:
-  FewPairs(const PairFinder& finder, const BuildRange& range) : finder_(finder), first_(range.first) {
+  FewPairs(const PairFinder& finder, const BuildRange& range) : finder_(finder) {
     const refs::Reference* const source = finder.ranges().references(range);
     const std::uint32_t count = range.size();
     all_ = (1u << count) - 1;
@@ -55,23 +51,23 @@ class PairFinder::FewPairs {
     if (count == kFew) find<kFew>(source);
   }
 
-  void write(std::uint32_t slot, tree::Node* nodes, std::uint32_t* ids) const {
+  void write(std::uint32_t slot, SubtreeCursor& cursor) const {
     std::array<Place, kFew> waiting;  // right parts: of each depth one
     std::size_t size = 0;
-    Place place{all_, first_, slot};
+    Place place{all_, slot};
     while (true) {
       const std::uint32_t left = left_[place.set];
       if (left != 0) {
-        const std::uint32_t mid = place.first + kSizes[left];
-        nodes[place.slot] = {box_[place.set].box(), 2 * mid, 0};
-        waiting[size++] = {place.set ^ left, mid, 2 * mid + 1};
-        place = {left, place.first, 2 * mid};
+        const std::uint32_t children = cursor.take_pair();
+        cursor.nodes[place.slot] = {box_[place.set].box(), children, 0};
+        waiting[size++] = {place.set ^ left, children + 1};
+        place = {left, children};
         continue;
       }
       if (is_leaf_[place.set])
-        write_leaf(place, nodes, ids);
+        write_leaf(place, cursor);
       else
-        write_parts(place, nodes, ids);
+        write_parts(place, cursor);
       if (size == 0) return;
       place = waiting[--size];
     }
@@ -79,11 +75,10 @@ class PairFinder::FewPairs {
 
  private:
   static constexpr std::uint32_t kSets = 1u << kFew;
-  static constexpr std::uint8_t kSizes[kSets] = {0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
 
-  /// A set whose tree is to be written: its first pair's place and its node's.
+  /// A set whose tree is to be written, and its node's place.
   struct Place {
-    std::uint32_t set, first, slot;
+    std::uint32_t set, slot;
   };
 
   const ReferencePair& pair(std::uint32_t i) const { return finder_.pairs_[pairs_[i]]; }
@@ -154,30 +149,26 @@ class PairFinder::FewPairs {
     (std::make_integer_sequence<std::uint32_t, (1u << kCount) - 1>());
   }
 
-  void write_leaf(const Place& place, tree::Node* nodes, std::uint32_t* ids) const {
-    std::uint32_t* next = ids + 2 * place.first;
-    for (std::uint32_t rest = place.set; rest != 0; rest &= rest - 1) {
-      const ReferencePair& one = pair(std::uint32_t(std::countr_zero(rest)));
-      *next++ = finder_.primitive(one.first);
-      if (one.second != kNoPartner) *next++ = finder_.primitive(one.second);
-    }
-    nodes[place.slot] = {box_[place.set].box(), 2 * place.first, count_[place.set]};
+  void write_leaf(const Place& place, SubtreeCursor& cursor) const {
+    cursor.nodes[place.slot] = {box_[place.set].box(), cursor.next_id, count_[place.set]};
+    for (std::uint32_t rest = place.set; rest != 0; rest &= rest - 1)
+      finder_.write_pair(pair(std::uint32_t(std::countr_zero(rest))), cursor);
   }
 
   /// A pair of which each reference is a leaf.
-  void write_parts(const Place& place, tree::Node* nodes, std::uint32_t* ids) const {
+  void write_parts(const Place& place, SubtreeCursor& cursor) const {
     const ReferencePair& one = pair(std::uint32_t(std::countr_zero(place.set)));
-    const auto children = std::uint32_t(2 * (finder_.pairs_.size() + one.rank));
-    nodes[place.slot] = {box_[place.set].box(), children, 0};
+    const std::uint32_t children = cursor.take_pair();
+    cursor.nodes[place.slot] = {box_[place.set].box(), children, 0};
     for (const std::uint32_t part : {0u, 1u}) {
       const refs::Reference& reference = finder_.references_[part == 0 ? one.first : one.second];
-      ids[2 * place.first + part] = reference.primitive;
-      nodes[children + part] = {reference.box(), 2 * place.first + part, 1};
+      cursor.nodes[children + part] = {reference.box(), cursor.next_id, 1};
+      cursor.ids[cursor.next_id++] = reference.primitive;
     }
   }
 
   const PairFinder& finder_;
-  std::uint32_t first_, all_;
+  std::uint32_t all_;
   std::uint32_t pairs_[kFew];
   float parts_area_[kFew];
   // By set. Areas are half and in the finder's scale.
@@ -189,16 +180,17 @@ class PairFinder::FewPairs {
   bool is_leaf_[kSets];
 };
 
-void PairFinder::finish(const BuildRange& range, tree::Node* nodes, std::uint32_t* ids) const {
-  if (finishes(range)) return FewPairs(*this, range).write(range.slot, nodes, ids);
+void PairFinder::write_pair(const ReferencePair& pair, SubtreeCursor& cursor) const {
+  cursor.ids[cursor.next_id++] = primitive(pair.first);
+  if (pair.second != kNoPartner) cursor.ids[cursor.next_id++] = primitive(pair.second);
+}
+
+void PairFinder::finish(const BuildRange& range, SubtreeCursor& cursor) const {
+  if (finishes(range)) return FewPairs(*this, range).write(range.slot, cursor);
   const refs::Reference* const source = ranges().references(range);
-  std::uint32_t* next = ids + 2 * range.first;
-  for (std::uint32_t i = 0; i < range.size(); ++i) {
-    const ReferencePair& pair = pairs_[source[i].primitive];
-    *next++ = primitive(pair.first);
-    if (pair.second != kNoPartner) *next++ = primitive(pair.second);
-  }
-  nodes[range.slot] = {range.bounds.box(), 2 * range.first, std::uint32_t(next - (ids + 2 * range.first))};
+  const std::uint32_t first = cursor.next_id;
+  for (std::uint32_t i = 0; i < range.size(); ++i) write_pair(pairs_[source[i].primitive], cursor);
+  cursor.nodes[range.slot] = {range.bounds.box(), first, cursor.next_id - first};
 }
 
 }  // namespace boxwood::builders

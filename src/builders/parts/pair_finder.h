@@ -5,19 +5,19 @@
 
 #include "builders/parts/binned_finder.h"
 #include "builders/parts/edge_pairs.h"
+#include "builders/parts/top_down.h"
 
 namespace boxwood::builders {
 
 class PairFinder : public BinnedSahFinder {
  public:
-  /// `ranges` are over the pairs of `pairs`; a driver with two nodes for each reference and two ids for
-  /// each pair is to be used.
+  /// `ranges` are over the pairs of `pairs`; to a driver each stands for two parts.
   PairFinder(ReferenceRanges& ranges, const BuildRange& root, const EdgePairs& pairs,
              std::span<const refs::Reference> references, const tree::CostModel& cost, std::uint32_t leaf_max);
 
   bool finishes(const BuildRange& range) const { return range.size() <= kFew; }
   /// The cheapest of all trees over a few pairs; one leaf over more.
-  void finish(const BuildRange& range, tree::Node* nodes, std::uint32_t* ids) const;
+  void finish(const BuildRange& range, SubtreeCursor& cursor) const;
 
  private:
   /// So many have few enough trees to try all.
@@ -29,6 +29,8 @@ class PairFinder : public BinnedSahFinder {
   std::uint32_t primitive(std::uint32_t reference) const {
     return numbered_ ? reference : references_[reference].primitive;
   }
+
+  void write_pair(const ReferencePair& pair, SubtreeCursor& cursor) const;
 
   std::span<const ReferencePair> pairs_;
   std::span<const refs::Reference> references_;

@@ -41,18 +41,16 @@ template <class Finder>
 Result<tree::BinaryTree> build_with_planes(refs::ReferenceSet&& set, const OptionValues& options,
                                            const BuildContext& context) {
   const std::size_t primitive_count = set.primitive_count;
-  AlignedBuffer<tree::Node> nodes;
-  AlignedBuffer<std::uint32_t> ids;
+  TreePieces pieces;
   {
     ReferenceRanges ranges(std::move(set));
     const BuildRange root = ranges.root(context.executor);
     Finder finder(ranges, root, options);
     TopDownDriver<Finder> driver(finder, ranges.size(), context);
     if (!driver.run(root)) return cancelled_error();
-    nodes = std::move(driver.nodes());
-    ids = std::move(driver.ids());
-  }  // the references are no longer needed: their memory goes before the canonical copy is made
-  return tree::canonicalize(nodes.span(), ids.span(), primitive_count, false, context.executor);
+    pieces = std::move(driver.pieces());
+  }  // the references are no longer needed: their memory goes before the tree is put together
+  return pieces.join(primitive_count, context.executor);
 }
 
 }  // namespace boxwood::builders

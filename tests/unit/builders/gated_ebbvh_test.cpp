@@ -78,6 +78,53 @@ TEST(GatedEbbvh, TrianglesThatFillTheirBoxTogetherArePairs) {
   EXPECT_EQ(roots(build_gated(cube, executor, {{"weld", "index"}})), 12);
 }
 
+TEST(GatedEbbvh, NearbySearchPairsWhatFollowsSoonAndSharesAnEdge) {
+  SequentialExecutor executor;
+  const auto pairs = [&](const TriangleMesh& mesh, const char* search) {
+    return double(mesh.triangles.size()) - roots(build_gated(mesh, executor, {{"search", search}}));
+  };
+  TriangleMesh quads = wave(20, 15);  // both halves of a quad stand side by side
+  EXPECT_GT(pairs(quads, "near"), 200);
+  // Six triangles after each other are looked at: five strangers between the halves are not too many, six are.
+  const auto apart = [&](std::size_t between) {
+    TriangleMesh mesh = test::make_mesh({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}});
+    for (std::size_t i = 0; i < between; ++i) {
+      const auto first = std::uint32_t(mesh.vertices.size());
+      for (const Vec3& corner : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 0, 1}})
+        mesh.vertices.push_back(corner + Vec3{0, 9, 4 * float(i)});
+      mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    mesh.triangles.push_back({0, 2, 3});
+    return mesh;
+  };
+  EXPECT_EQ(pairs(apart(5), "near"), 1);
+  EXPECT_EQ(pairs(apart(6), "near"), 0);
+  EXPECT_EQ(pairs(apart(6), "all"), 1);
+  // A box that is filled together is not enough: these cross, and have no corner in common.
+  const TriangleMesh cross = test::make_mesh(
+      {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0.01f}, {0, 1, 0.01f}, {1, 1, 0.01f}}, {{0, 1, 2}, {3, 4, 5}});
+  EXPECT_EQ(pairs(cross, "near"), 0);
+  TriangleMesh touching = cross;
+  touching.triangles[1] = {0, 4, 2};
+  EXPECT_EQ(pairs(touching, "near"), 1);
+}
+
+TEST(GatedEbbvh, PartsOfOneTriangleAreNoPair) {
+  SequentialExecutor executor;
+  const TriangleMesh mesh = test::make_mesh({{0, 0, 0}, {8, 0, 0}, {8, 8, 0.5f}}, {{0, 1, 2}});
+  for (const char* search : {"near", "all"}) {
+    auto set = refs::make_references(mesh, executor);
+    ASSERT_TRUE(set);
+    auto split = refs::apply_presplit(std::move(*set), mesh, *refs::parse_presplit("esc:k=1000"), executor);
+    ASSERT_TRUE(split);
+    const auto parts = double(split->references.size());
+    ASSERT_GT(parts, 1);
+    const auto tree = builders::build(std::move(*split), {"ebbvh-gated", {{"search", search}}}, {executor});
+    ASSERT_TRUE(tree) << tree.error().message;
+    EXPECT_EQ(roots(*tree), parts) << search;
+  }
+}
+
 TEST(GatedEbbvh, GatesRefusePairs) {
   SequentialExecutor executor;
   const TriangleMesh mesh = wave(20, 15);

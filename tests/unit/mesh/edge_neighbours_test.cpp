@@ -44,7 +44,26 @@ std::vector<EdgeNeighbours> all_neighbours(const TriangleMesh& mesh, bool by_pos
   return neighbours;
 }
 
+/// Two corners of one, at different vertices, are corners of the other: asked of all pairs of triangles.
+void expect_shared_edges(const TriangleMesh& mesh, bool by_position) {
+  const auto same = [&](std::uint32_t a, std::uint32_t b) {
+    return by_position ? mesh.vertices[a] == mesh.vertices[b] : a == b;
+  };
+  for (std::size_t a = 0; a < mesh.triangles.size(); ++a)
+    for (std::size_t b = 0; b < mesh.triangles.size(); ++b) {
+      bool share = false;
+      for (std::size_t i = 0; i < 9; ++i)
+        for (std::size_t j = 0; j < 9; ++j)
+          share |= a != b && same(mesh.triangles[a][i / 3], mesh.triangles[b][j / 3]) &&
+                   same(mesh.triangles[a][i % 3], mesh.triangles[b][j % 3]) &&
+                   !same(mesh.triangles[a][i / 3], mesh.triangles[a][i % 3]);
+      ASSERT_EQ(mesh::share_edge(mesh, a, b, by_position ? Weld::position : Weld::index), share) << a << ", " << b;
+    }
+}
+
 void expect_all_neighbours(const TriangleMesh& mesh) {
+  if (mesh.triangles.size() < 300)
+    for (const bool by_position : {true, false}) expect_shared_edges(mesh, by_position);
   const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 8);
   ThreadExecutor threads(8);
   SequentialExecutor sequential;
