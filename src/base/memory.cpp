@@ -72,18 +72,30 @@ class KeptBlocks {
     return nullptr;
   }
 
-  /// Keeps a block, or gives it to the system, so that `most` bytes at most are kept, those of the oldest blocks last.
+  /// Keeps a block if there is room in `most` bytes, which blocks that nobody has wanted for long make. Where there is
+  /// none it goes to the system: builds release their arrays in the same order each time, so if new blocks drove out
+  /// old ones, a build that takes more than is kept would drive out each block just before it is wanted.
   void keep(void* block, std::size_t size, std::size_t alignment, std::size_t most) noexcept {
-    if (size > most) return Kept{block, size, alignment}.give_back();
-    Kept displaced;
-    {
-      const std::lock_guard lock(mutex_);
-      if (blocks_.size() == kMostBlocks) displaced = take_oldest();
-      blocks_.push_back({block, size, alignment});
-      bytes_ += size;
+    for (;;) {
+      Kept displaced;
+      {
+        const std::lock_guard lock(mutex_);
+        ++releases_;
+        if (blocks_.size() < kMostBlocks && bytes_ + size <= most) {
+          blocks_.push_back({block, size, alignment, releases_});
+          bytes_ += size;
+          return;
+        }
+        if (blocks_.empty() || releases_ - blocks_.front().released <= kStale) {
+          displaced = {block, size, alignment};
+          block = nullptr;
+        } else {
+          displaced = take_oldest();
+        }
+      }
+      displaced.give_back();  // without the lock: it can take long
+      if (!block) return;
     }
-    displaced.give_back();
-    shrink_to(most);
   }
 
   void shrink_to(std::size_t most) noexcept {
@@ -94,15 +106,18 @@ class KeptBlocks {
         if (bytes_ <= most || blocks_.empty()) return;
         oldest = take_oldest();
       }
-      oldest.give_back();  // without the lock: it can take long
+      oldest.give_back();
     }
   }
 
  private:
   static constexpr std::size_t kMostBlocks = 256;
+  /// Releases after which a block that was not taken again need not be kept: those of some ten builds.
+  static constexpr std::uint64_t kStale = 1024;
   struct Kept {
     void* block = nullptr;
     std::size_t size = 0, alignment = 1;
+    std::uint64_t released = 0;  ///< the number of its release
 
     void give_back() const noexcept {
       if (block) ::operator delete(block, std::align_val_t(alignment));
@@ -122,6 +137,7 @@ class KeptBlocks {
     return blocks;
   }();
   std::size_t bytes_ = 0;
+  std::uint64_t releases_ = 0;
 };
 
 /// Lives as long as the process, for buffers that static objects own.
