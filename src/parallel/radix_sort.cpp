@@ -35,12 +35,16 @@ std::size_t digit(std::uint64_t key, int shift) {
 /// Turns the counts of all chunks into the places of each chunk's first item of each digit. False: all items have the
 /// same digit, so that nothing would move.
 bool place(LargeVector<Counts>& chunks, std::size_t items) {
+  Counts first{};  // of each digit: its items in the chunks so far, in the end the place of its first one
+  for (Counts& counts : chunks)
+    for (std::size_t d = 0; d < kDigits; ++d) first[d] += std::exchange(counts[d], first[d]);
   std::uint32_t next = 0;
-  for (std::size_t d = 0; d < kDigits; ++d) {
-    const std::uint32_t first = next;
-    for (Counts& counts : chunks) next += std::exchange(counts[d], next);
-    if (next - first == items) return false;
+  for (std::uint32_t& of_digit : first) {
+    if (of_digit == items) return false;
+    next += std::exchange(of_digit, next);
   }
+  for (Counts& counts : chunks)
+    for (std::size_t d = 0; d < kDigits; ++d) counts[d] += first[d];
   return true;
 }
 

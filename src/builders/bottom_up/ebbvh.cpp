@@ -283,7 +283,7 @@ Result<tree::BinaryTree> build_over_pairs(refs::ReferenceSet&& set, const Option
     ReferenceRanges ranges(std::move(pairs.set));
     const BuildRange root = ranges.root(context.executor);
     PairFinder finder(ranges, root, pairs, set.references.span(), options.cost(), options.integer(kLeafMax));
-    TopDownDriver<PairFinder> driver(finder, roots, context, kLargeRange, 2);
+    TopDownDriver<PairFinder> driver(finder, roots, context, {.parts = 2});
     if (!driver.run(root)) return cancelled_error();
     pieces = std::move(driver.pieces());
   }

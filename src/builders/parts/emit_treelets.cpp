@@ -9,52 +9,21 @@
 // O(t log t) for t treelets, deterministic.
 #include "builders/parts/emit_treelets.h"
 
-#include "builders/parts/area_scale.h"
-#include "builders/parts/bins.h"
-#include "builders/parts/plane_builder.h"
+#include "builders/parts/binned_finder.h"
 
 namespace boxwood::builders {
 namespace {
 
-/// Cheapest split between bins; never a leaf.
-class TreeletFinder : public PlaneFinder {
- public:
-  TreeletFinder(ReferenceRanges& ranges, const BuildRange& root, const OptionValues& options)
-      : PlaneFinder(ranges, root, options),
-        area_scale_(area_scale(root.bounds.box())),
-        bins_(static_cast<int>(options.integer("bins"))),
-        all_axes_(options.choice("axes") == 0) {}
+/// Ranges of so many treelets are worth a task: each holds many references, yet all is waiting for their tree.
+constexpr std::size_t kTreeletTask = 1 << 8;
 
-  RangeSplit find(const BuildRange& range, Executor& executor) const {
-    const int axis = all_axes_ ? -1 : range.centroids2.box().widest_axis();
-    const BinGrid grid = BinGrid::over(range.centroids2, bins_, axis);
-    if (!grid.any_usable() || !(scaled_half_area(range.bounds.box(), area_scale_) > 0)) return median(range);
-    Bins bins(grid.count);
-    bins.add(grid, ranges().references(range), range.size());
-    const BinSplit best = bins.best_split(grid, area_scale_);
-    if (best.axis < 0) return median(range);
-
-    RangeSplit split;
-    split.kind = RangeSplit::Kind::plane;
-    split.axis = best.axis;
-    alignas(16) float origin[4], scale[4];
-    grid.origin.store(origin);
-    grid.scale.store(scale);
-    split.origin = origin[best.axis];
-    split.scale = scale[best.axis];
-    split.threshold = static_cast<float>(best.bin);
-    ranges().count(range, split, executor);
-    split.has_boxes = true;
-    split.left = best.left;
-    split.right = best.right;
-    return split;
-  }
-
- private:
-  float area_scale_;
-  int bins_;
-  bool all_axes_;
-};
+/// Treelets are never put together in a leaf.
+BinnedSahFinder::Settings settings(const OptionValues& options) {
+  return {.cost = {},
+          .leaf_max = 1,
+          .bins = static_cast<int>(options.integer("bins")),
+          .all_axes = options.choice("axes") == 0};
+}
 
 refs::ReferenceSet as_references(std::span<const std::uint32_t> treelets, std::span<const tree::TopNode> top) {
   refs::ReferenceSet set;
@@ -75,8 +44,8 @@ std::optional<std::uint32_t> join_treelets(std::span<const std::uint32_t> treele
   const BuildContext quiet{context.executor, {}, context.cancel};
   ReferenceRanges references(as_references(treelets, top));
   const BuildRange whole = references.root(context.executor);
-  TreeletFinder finder(references, whole, options);
-  TopDownDriver<TreeletFinder> driver(finder, treelets.size(), quiet);
+  BinnedSahFinder finder(references, whole, settings(options));
+  TopDownDriver<BinnedSahFinder> driver(finder, treelets.size(), quiet, {.task_range = kTreeletTask});
   if (!driver.run(whole)) return {};
 
   const tree::BinaryTree tree = driver.pieces().join(treelets.size(), context.executor);

@@ -62,20 +62,20 @@ concept MakesSubtrees = requires(Finder finder, const BuildRange& range) {
   finder.finishes(range);
 };
 
+struct TopDownSizes {
+  std::size_t large_range = kLargeRange;  ///< ranges of more references are worked on by all threads
+  std::size_t task_range = kTaskRange;    ///< ranges of up to so many are finished by one thread
+  std::size_t parts = 1;                  ///< references in leaves that each of the finder's may stand for
+};
+
 template <class Finder>
 class TopDownDriver {
  public:
-  /// Ranges of more references than `large_range` are worked on by all threads. Of a finder that makes subtrees each
-  /// reference may stand for `parts` of its leaves' ones.
   TopDownDriver(Finder& finder, std::size_t reference_count, const BuildContext& context,
-                std::size_t large_range = kLargeRange, std::uint32_t parts = 1)
-      : finder_(finder),
-        executor_(context.executor),
-        monitor_(context, reference_count),
-        large_range_(large_range),
-        parts_(parts) {
-    pieces_.nodes = AlignedBuffer<tree::Node>(2 * parts * reference_count);
-    pieces_.ids = AlignedBuffer<std::uint32_t>(parts * reference_count);
+                const TopDownSizes& sizes = {})
+      : finder_(finder), executor_(context.executor), monitor_(context, reference_count), sizes_(sizes) {
+    pieces_.nodes = AlignedBuffer<tree::Node>(2 * sizes.parts * reference_count);
+    pieces_.ids = AlignedBuffer<std::uint32_t>(sizes.parts * reference_count);
   }
 
   /// Fills pieces(). False when cancelled.
@@ -83,7 +83,7 @@ class TopDownDriver {
     std::vector<BuildRange> large, small;
     pieces_.top.push_back({});
     root.slot = 0;
-    (root.size() > kTaskRange ? large : small).push_back(root);
+    (root.size() > sizes_.task_range ? large : small).push_back(root);
     while (!large.empty() && !monitor_.cancelled()) large = split_round(large, small);
     executor_.for_chunks(small.size(), 1, [&](std::size_t chunk, std::size_t, std::size_t) {
       finish(small[chunk]);
@@ -109,7 +109,7 @@ class TopDownDriver {
   std::vector<BuildRange> split_round(const std::vector<BuildRange>& ranges, std::vector<BuildRange>& small) {
     std::vector<Children> children(ranges.size());
     const auto by_all_threads = [&](const BuildRange& range) {
-      return ranges.size() < kManyRanges && range.size() > large_range_;
+      return ranges.size() < kManyRanges && range.size() > sizes_.large_range;
     };
     for (std::size_t i = 0; i < ranges.size(); ++i)
       if (by_all_threads(ranges[i]))
@@ -134,7 +134,7 @@ class TopDownDriver {
       parent.left = children[i].left.slot;
       parent.right = children[i].right.slot;
       for (const BuildRange& child : {children[i].left, children[i].right})
-        (child.size() > kTaskRange ? large : small).push_back(child);
+        (child.size() > sizes_.task_range ? large : small).push_back(child);
     }
     return large;
   }
@@ -146,7 +146,7 @@ class TopDownDriver {
         : driver_(driver),
           top_(driver.pieces_.top[range.slot]),
           root_(range),
-          first_id_(driver.parts_ * range.first),
+          first_id_(static_cast<std::uint32_t>(driver.sizes_.parts * range.first)),
           cursor_{driver.pieces_.nodes.data() + 2 * std::size_t{first_id_}, driver.pieces_.ids.data(), 2, first_id_} {
       root_.slot = 0;
     }
@@ -219,8 +219,7 @@ class TopDownDriver {
   Finder& finder_;
   Executor& executor_;
   BuildMonitor monitor_;
-  std::size_t large_range_;
-  std::uint32_t parts_;
+  TopDownSizes sizes_;
   TreePieces pieces_;
 };
 
@@ -234,7 +233,7 @@ Result<tree::BinaryTree> build_top_down(refs::ReferenceSet&& set, const BuildCon
   TreePieces pieces;
   {
     auto finder = make_finder(std::move(set));
-    TopDownDriver<decltype(finder)> driver(finder, count, context, large_range);
+    TopDownDriver<decltype(finder)> driver(finder, count, context, {.large_range = large_range});
     if (!driver.run(finder.root(context.executor))) return cancelled_error();
     pieces = std::move(driver.pieces());
   }  // the references are no longer needed: their memory goes before the tree is put together
