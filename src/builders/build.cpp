@@ -64,11 +64,14 @@ bool has_repeats(const refs::ReferenceSet& set) {
   return false;
 }
 
-/// How many references may be taken as one: no more than a leaf may have.
-std::uint32_t merge_most(const OptionValues& options) {
+/// How many references may be taken as one: no more than a leaf may have, and just one where that saves too few.
+std::uint32_t merge_most(const OptionValues& options, std::span<const refs::Reference> references) {
   if (!options.has(kMergeMost)) return 1;
-  const std::uint32_t most = options.integer(kMergeMost), leaf_max = options.integer(kLeafMax);
-  return leaf_max == 0 ? most : std::min(most, leaf_max);
+  const std::uint32_t leaf_max = options.integer(kLeafMax), wanted = options.integer(kMergeMost);
+  const std::uint32_t most = leaf_max == 0 ? wanted : std::min(wanted, leaf_max);
+  const double least = options.number(kMergeLeast);
+  if (most > 1 && least > 0 && sampled_saving(references, most, options.number(kMergeGrowth)) < least) return 1;
+  return most;
 }
 
 /// Builds over runs of references, each at the price and size of the references in it.
@@ -111,7 +114,7 @@ Result<tree::BinaryTree> build_checked(refs::ReferenceSet&& references, const Bu
   const std::vector<Box> boxes = boxes_by_primitive(references);
 #endif
   if (!references.primitives) references.primitives = refs::box_primitives();
-  const std::uint32_t most = merge_most(*values);
+  const std::uint32_t most = merge_most(*values, references.references.span());
   const bool numbered = checked.increasing && references.references[references.references.size() - 1].primitive + 1 ==
                                                   references.references.size();
   Result<tree::BinaryTree> tree = most > 1

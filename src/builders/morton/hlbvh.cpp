@@ -35,7 +35,8 @@ constexpr OptionSpec kOptions[] = {
      .choices = kAxes},
     kMortonLeafMaxOption,
     kMergeMostOption,
-    kMergeGrowthOption};
+    kMergeGrowthOption,
+    kMergeLeastOption};
 
 /// Ranges of equal first bits.
 LargeVector<MortonRange> treelet_ranges(std::span<const KeyedIndex> order, int shift) {

@@ -12,7 +12,8 @@
 namespace boxwood::builders {
 namespace {
 
-constexpr OptionSpec kOptions[] = {kMortonBitsOption, kMortonLeafMaxOption, kMergeMostOption, kMergeGrowthOption};
+constexpr OptionSpec kOptions[] = {kMortonBitsOption, kMortonLeafMaxOption, kMergeMostOption, kMergeGrowthOption,
+                                   kMergeLeastOption};
 
 Result<tree::BinaryTree> build_lbvh(refs::ReferenceSet&& set, const OptionValues& options,
                                     const BuildContext& context) {

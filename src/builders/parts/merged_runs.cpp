@@ -6,6 +6,7 @@
 // ranges of references in order: a sum over the runs' lengths says where each range is once they are replaced.
 #include "builders/parts/merged_runs.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "builders/parts/box4.h"
@@ -21,16 +22,15 @@ std::size_t chunk_count(std::size_t count) {
   return (count + kChunk - 1) / kChunk;
 }
 
-/// Writes the runs of the references [begin, end) over them, from `begin` on, and the first reference of each. Returns
-/// their number.
-std::size_t write_runs(std::span<Reference> references, std::size_t begin, std::size_t end, std::uint32_t most,
-                       float growth, std::uint32_t* first_of_run) {
+/// Calls f(first reference, box) for each run of the references [begin, end), once all of the run have been read.
+template <class F>
+void for_runs(std::span<const Reference> references, std::size_t begin, std::size_t end, std::uint32_t most,
+              float growth, F f) {
   const Float4 mask = xyz_mask();
   const auto load = [&](std::size_t i) {
     const Box4 box = Box4::of(references[i]);
     return Box4{box.lower & mask, box.upper & mask};
   };
-  std::size_t run = begin;
   for (std::size_t first = begin; first < end;) {
     Box4 box = load(first);
     float parts = half_area(box.upper - box.lower);
@@ -46,11 +46,21 @@ std::size_t write_runs(std::span<Reference> references, std::size_t begin, std::
       parts = with_next;
       primitive = references[last].primitive;
     }
+    f(first, box);
+    first = last;
+  }
+}
+
+/// Writes the runs of the references [begin, end) over them, from `begin` on, and the first reference of each. Returns
+/// their number.
+std::size_t write_runs(std::span<Reference> references, std::size_t begin, std::size_t end, std::uint32_t most,
+                       float growth, std::uint32_t* first_of_run) {
+  std::size_t run = begin;
+  for_runs(references, begin, end, most, growth, [&](std::size_t first, const Box4& box) {
     box.lower.store(&references[run].lower);
     box.upper.store(&references[run].upper);
     first_of_run[run++] = std::uint32_t(first);
-    first = last;
-  }
+  });
   return run - begin;
 }
 
@@ -61,6 +71,18 @@ std::size_t add_up(std::vector<std::size_t>& counts) {
 }
 
 }  // namespace
+
+double sampled_saving(std::span<const Reference> references, std::uint32_t most, double growth) {
+  constexpr std::size_t kStretches = 16, kStretch = 256;
+  const std::size_t distance = std::max(kStretch, references.size() / kStretches);
+  std::size_t looked_at = 0, runs = 0;
+  for (std::size_t begin = 0; begin < references.size(); begin += distance) {
+    const std::size_t end = std::min(begin + kStretch, references.size());
+    for_runs(references, begin, end, most, float(growth), [&](std::size_t, const Box4&) { ++runs; });
+    looked_at += end - begin;
+  }
+  return looked_at == 0 ? 0 : 1 - double(runs) / double(looked_at);
+}
 
 MergedRuns::MergedRuns(refs::ReferenceSet&& set, bool numbered, std::uint32_t most, double growth, Executor& executor)
     : primitive_count_(set.primitive_count) {

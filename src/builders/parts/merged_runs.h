@@ -7,6 +7,7 @@ namespace boxwood::builders {
 
 inline constexpr const char* kMergeMost = "merge.most";
 inline constexpr const char* kMergeGrowth = "merge.growth";
+inline constexpr const char* kMergeLeast = "merge.least";
 
 inline constexpr OptionSpec kMergeMostOption{
     .key = kMergeMost,
@@ -21,6 +22,15 @@ inline constexpr OptionSpec kMergeGrowthOption{
     .default_value = 0.8,
     .lowest = 0,
     .highest = 1e6};
+inline constexpr OptionSpec kMergeLeastOption{
+    .key = kMergeLeast,
+    .description = "least share of the references that this must save, going by a sample; else none are taken as one",
+    .default_value = 0,
+    .lowest = 0,
+    .highest = 1};
+
+/// The share of references that runs (see MergedRuns) save, by a few stretches of them, at even distances.
+double sampled_saving(std::span<const refs::Reference> references, std::uint32_t most, double growth);
 
 class MergedRuns {
  public:

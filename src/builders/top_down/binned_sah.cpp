@@ -34,7 +34,8 @@ constexpr OptionSpec kOptions[] = {
      .choices = kAxes},
     leaf_max_option(16, "most references in a leaf; 0: no limit but the cost"),
     kMergeMostOption,
-    kMergeGrowthOption};
+    kMergeGrowthOption,
+    kMergeLeastOption};
 
 }  // namespace
 

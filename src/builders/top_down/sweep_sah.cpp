@@ -14,7 +14,7 @@ namespace boxwood::builders {
 namespace {
 
 constexpr OptionSpec kOptions[] = {leaf_max_option(16, "most references in a leaf; 0: no limit but the cost"),
-                                   kMergeMostOption, kMergeGrowthOption};
+                                   kMergeMostOption, kMergeGrowthOption, kMergeLeastOption};
 
 Result<tree::BinaryTree> build_sweep_sah(refs::ReferenceSet&& set, const OptionValues& options,
                                          const BuildContext& context) {

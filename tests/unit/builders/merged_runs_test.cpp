@@ -69,6 +69,25 @@ TEST(MergedRuns, AreThoseOfTheDefinitionAndStayTogether) {
   }
 }
 
+TEST(MergedRuns, AreLeftOutWhereTheySaveTooFew) {
+  // Every third box has a partner: a third of the references is saved, wherever one looks.
+  testing::Boxes boxes;
+  for (std::size_t i = 0; i < test::effort(30000, 4); ++i) {
+    const float x = 3 * float(i / 3) + (i % 3 == 2 ? 2.0f : 0.0f);
+    boxes.push_back({{x, 0, 0}, {x + 1, 1, 1}});
+  }
+  for (const char* builder : kBuilders) {
+    const auto with = [&](const char* least) {
+      return build(testing::reference_set(boxes), builder,
+                   {{"merge.most", "2"}, {"merge.growth", "0.8"}, {"merge.least", least}});
+    };
+    EXPECT_NEAR(merged(with("0.3")), 2.0 / 3 * double(boxes.size()), 20) << builder;
+    EXPECT_EQ(merged(with("0.37")), -1) << builder;
+    EXPECT_EQ(tree::hash(with("0.37")), tree::hash(build(testing::reference_set(boxes), builder, {})));
+    EXPECT_EQ(tree::hash(with("0")), tree::hash(with("0.3")));
+  }
+}
+
 TEST(MergedRuns, NoLeafHasMoreThanItsLimit) {
   const testing::Boxes boxes = testing::height_field(20);
   for (const char* builder : kBuilders) {

@@ -38,8 +38,8 @@ TEST(Options, EchoListsAllInRegistryOrder) {
   const auto values = resolve_options("binned-sah", {{"axes", "longest"}, {"cost.intersection", "0.25"}});
   ASSERT_TRUE(values);
   const std::vector<std::pair<std::string, std::string>> expected{
-      {"cost.traversal", "1"}, {"cost.intersection", "0.25"}, {"bins", "16"},         {"axes", "longest"},
-      {"leaf.max", "16"},      {"merge.most", "1"},           {"merge.growth", "0.8"}};
+      {"cost.traversal", "1"}, {"cost.intersection", "0.25"}, {"bins", "16"},          {"axes", "longest"},
+      {"leaf.max", "16"},      {"merge.most", "1"},           {"merge.growth", "0.8"}, {"merge.least", "0"}};
   EXPECT_EQ(values->echo(), expected);
 }
 
