@@ -11,11 +11,11 @@ using Setting = std::pair<const char*, const char*>;
 /// A wide layout tests four triangles at once, so a subtree of a few is hardly ever worth its nodes: with these prices
 /// the builder stops there, where the collapse would make a leaf anyway, and pairs need not be told apart before
 /// (docs/best-tree.md).
-constexpr Setting kFastSettings[] = {{"cost.intersection", "0.2"},
+constexpr Setting kFastSettings[] = {{"cost.intersection", "0.15"},
                                      {"merge.most", "2"},
                                      {"merge.growth", "1"},
                                      {"merge.least", "0.4"},
-                                     {"treelet.bits", "12"}};
+                                     {"treelet.bits", "10"}};
 constexpr Setting kBalancedSettings[] = {{"cost.intersection", "0.4"}, {"merge.most", "2"}, {"merge.growth", "1"}};
 
 /// Planes where the sides overlap by less than a thousandth of the root's area cost the builder two fifths of its time
