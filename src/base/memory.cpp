@@ -112,8 +112,8 @@ class KeptBlocks {
 
  private:
   static constexpr std::size_t kMostBlocks = 256;
-  /// Releases after which a block that was not taken again need not be kept: those of some ten builds.
-  static constexpr std::uint64_t kStale = 1024;
+  /// Releases after which a block that was not taken again need not be kept: those of a few builds.
+  static constexpr std::uint64_t kStale = 256;
   struct Kept {
     void* block = nullptr;
     std::size_t size = 0, alignment = 1;
