@@ -8,7 +8,8 @@ namespace {
 template <class Corner>
 unsigned corners_in_common(const std::array<Corner, 3>& a, const std::array<Corner, 3>& b) {
   unsigned common = 0;
-  for (std::size_t i = 0; i < 3; ++i) common |= unsigned((a[i] == b[0]) | (a[i] == b[1]) | (a[i] == b[2])) << i;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) common |= unsigned(a[i] == b[j]) << i;
   return common;
 }
 
