@@ -76,34 +76,31 @@ class KeptBlocks {
   /// none it goes to the system: builds release their arrays in the same order each time, so if new blocks drove out
   /// old ones, a build that takes more than is kept would drive out each block just before it is wanted.
   void keep(void* block, std::size_t size, std::size_t alignment, std::size_t most) noexcept {
-    for (;;) {
+    if (size > most) return Kept{block, size, alignment}.give_back();
+    std::uint64_t release = 0;
+    for (bool displaces = true; displaces;) {
       Kept displaced;
       {
         const std::lock_guard lock(mutex_);
-        ++releases_;
+        if (release == 0) release = ++releases_;
         if (blocks_.size() < kMostBlocks && bytes_ + size <= most) {
-          blocks_.push_back({block, size, alignment, releases_});
+          blocks_.push_back({block, size, alignment, release});
           bytes_ += size;
           return;
         }
-        if (blocks_.empty() || releases_ - blocks_.front().released <= kStale) {
-          displaced = {block, size, alignment};
-          block = nullptr;
-        } else {
-          displaced = take_oldest();
-        }
+        displaces = release > blocks_.front().released + kStale;  // a list without room is not empty
+        displaced = displaces ? take_oldest() : Kept{block, size, alignment};
       }
       displaced.give_back();  // without the lock: it can take long
-      if (!block) return;
     }
   }
 
-  void shrink_to(std::size_t most) noexcept {
+  void give_back_all() noexcept {
     for (;;) {
       Kept oldest;
       {
         const std::lock_guard lock(mutex_);
-        if (bytes_ <= most || blocks_.empty()) return;
+        if (blocks_.empty()) return;
         oldest = take_oldest();
       }
       oldest.give_back();
@@ -180,7 +177,7 @@ void release(void* block, std::size_t bytes, std::size_t alignment) noexcept {
 }
 
 void give_back_unused() noexcept {
-  kept_blocks().shrink_to(0);
+  kept_blocks().give_back_all();
 }
 
 }  // namespace boxwood::memory

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstring>
 #include <numeric>
+#include <set>
 #include <thread>
 #include <vector>
 
@@ -74,6 +75,20 @@ TEST(Memory, MoreThanIsKeptIsGivenBackAndCanBeTakenAgain) {
   next[next.size() - 1] = 1;
   memory::give_back_unused();
   EXPECT_EQ(next[next.size() - 1], 1) << "what is in use is not given back";
+}
+
+TEST(Memory, WhatIsKeptStaysWhenMoreIsGivenBack) {
+  if (test::kInstrumented) GTEST_SKIP() << "a sanitizer must see every release";
+  memory::give_back_unused();
+  std::vector<void*> blocks(6);  // half as many again as are kept
+  for (void*& block : blocks) block = memory::allocate(32 * kMiB, 64);
+  for (void* block : blocks) memory::release(block, 32 * kMiB, 64);
+  std::set<void*> again;
+  for (int i = 0; i < 4; ++i) again.insert(memory::allocate(32 * kMiB, 64));
+  EXPECT_EQ(again, std::set<void*>(blocks.begin(), blocks.begin() + 4))
+      << "the first four, that the next build wants first";
+  for (void* block : again) memory::release(block, 32 * kMiB, 64);
+  memory::give_back_unused();
 }
 
 TEST(Memory, ServesSeveralThreads) {
