@@ -45,12 +45,15 @@ inline Float4 minimum(Float4 a, Float4 b) {
 inline Float4 maximum(Float4 a, Float4 b) {
   return {_mm_max_ps(a.v, b.v)};
 }
-/// Bitwise and, or: for masks of all or no bits per lane.
+/// Bitwise and, or, exclusive or: for masks of all or no bits per lane, and signs.
 inline Float4 operator&(Float4 a, Float4 b) {
   return {_mm_and_ps(a.v, b.v)};
 }
 inline Float4 operator|(Float4 a, Float4 b) {
   return {_mm_or_ps(a.v, b.v)};
+}
+inline Float4 operator^(Float4 a, Float4 b) {
+  return {_mm_xor_ps(a.v, b.v)};
 }
 /// All bits in the lanes where a < b.
 inline Float4 less(Float4 a, Float4 b) {
@@ -155,6 +158,9 @@ inline Float4 operator&(Float4 a, Float4 b) {
 }
 inline Float4 operator|(Float4 a, Float4 b) {
   return by_bits(a, b, [](std::uint32_t x, std::uint32_t y) { return x | y; });
+}
+inline Float4 operator^(Float4 a, Float4 b) {
+  return by_bits(a, b, [](std::uint32_t x, std::uint32_t y) { return x ^ y; });
 }
 inline Float4 less(Float4 a, Float4 b) {
   Float4 mask;

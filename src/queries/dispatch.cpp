@@ -1,10 +1,7 @@
 // Which instruction set runs: names, detection, the environment variable, and the way from a layout to its kernels.
 #include <cstdlib>
 
-#include "queries/kernels/targets.h"
-// targets.h first: it sets which targets Highway's headers see.
-#include <hwy/targets.h>
-
+#include "base/simd_dispatch.h"
 #include "queries/batch.h"
 #include "queries/kernels/kernels.h"
 

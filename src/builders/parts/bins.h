@@ -31,16 +31,24 @@ struct BinSplit {
   Box4 left, right;
 };
 
-/// Boxes and numbers of references per bin and axis.
+/// Boxes and numbers of references per bin and axis, uninitialised.
+struct BinTable {
+  /// By axis. The fourth places are not used: with them a bin's address is a shift away from its number.
+  struct Boxes {
+    alignas(32) float axis[4][8];  ///< lower x, y, z, any; upper x, y, z, any: negated, so that a minimum grows both
+  };
+  struct Counts {
+    alignas(16) std::uint32_t axis[4];
+  };
+
+  int count;
+  Boxes boxes[kMostBins];
+  Counts counts[kMostBins];
+};
+
 class Bins {
  public:
   explicit Bins(int count) { clear(count); }
-
-  /// A reference with its bin on each axis.
-  struct Placed {
-    Box4 box;
-    alignas(16) std::uint32_t bin[4];
-  };
 
   void clear(int count);
   void add(const BinGrid& grid, const refs::Reference* references, std::size_t count);
@@ -50,19 +58,7 @@ class Bins {
   std::uint32_t count_below(int axis, int bin) const;
 
  private:
-  void add(const Placed& placed, int axis);
-
-  /// By axis. The fourth places are not used: with them a bin's address is a shift away from its number.
-  struct Boxes {
-    Box4 axis[4];
-  };
-  struct Counts {
-    alignas(16) std::uint32_t axis[4];
-  };
-
-  int count_;
-  Boxes boxes_[kMostBins];
-  Counts counts_[kMostBins];
+  BinTable table_;
 };
 
 }  // namespace boxwood::builders

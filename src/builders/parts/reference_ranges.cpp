@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "builders/kernels/reference_kernels.h"
+
 namespace boxwood::builders {
 namespace {
 
@@ -18,68 +20,11 @@ bool goes_left(const RangeSplit& split, const Reference& reference) {
   return (reference.centroid2(split.axis) - split.origin) * split.scale < split.threshold;
 }
 
-/// Boxes of references and of their centroids.
-struct Measure {
-  Box4 bounds = Box4::empty(), centroids2 = Box4::empty();
-
-  void add(const Reference& reference, Float4 mask) {
-    const Box4 box = Box4::of(reference);
-    bounds.grow(box);
-    centroids2.grow(centroid2(box, mask));
-  }
-  void add(const Measure& other) {
-    bounds.grow(other.bounds);
-    centroids2.grow(other.centroids2);
-  }
-};
-
-Measure measure_all(const Reference* references, std::size_t count) {
+ReferenceBoxes measure_all(const Reference* references, std::size_t count) {
   const Float4 mask = xyz_mask();
-  Measure measure;
+  ReferenceBoxes measure;
   for (std::size_t i = 0; i < count; ++i) measure.add(references[i], mask);
   return measure;
-}
-
-/// The centroid boxes (and with kBounds also the boxes) of both sides of a partition.
-struct Sides {
-  Measure left, right;
-};
-
-/// Copies references to the place of their side. The masks turn the centroids of the other side into NaN, which
-/// minimum and maximum pass over, so both sides are measured without a branch.
-template <bool kBounds>
-Sides scatter(const RangeSplit& split, const Reference* source, std::size_t count, Reference* left, Reference* right) {
-  const Float4 mask = xyz_mask();
-  alignas(16) std::uint32_t ignore[2][4] = {{0, 0, 0, 0}, {~0u, ~0u, ~0u, ~0u}};
-  const int axis = split.axis;
-  const float origin = split.origin, scale = split.scale, threshold = split.threshold;
-  Reference* const base = left;
-  std::ptrdiff_t next_left = 0, next_right = right - left;
-  Sides sides;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Box4 box = Box4::of(source[i]);
-    const float* const lower = &source[i].lower.x;
-    const bool is_left = (lower[axis] + lower[axis + 4] - origin) * scale < threshold;
-    Reference* const target = base + (is_left ? next_left : next_right);
-    box.lower.store(&target->lower);
-    box.upper.store(&target->upper);
-    next_left += is_left;
-    next_right += !is_left;
-    const Float4 centroid = centroid2(box, mask);
-    const Float4 not_left = Float4::load(ignore[!is_left]), not_right = Float4::load(ignore[is_left]);
-    sides.left.centroids2.grow(centroid | not_left);
-    sides.right.centroids2.grow(centroid | not_right);
-    if constexpr (kBounds) {
-      sides.left.bounds.grow({box.lower | not_left, box.upper | not_left});
-      sides.right.bounds.grow({box.lower | not_right, box.upper | not_right});
-    }
-  }
-  return sides;
-}
-
-Sides scatter(const RangeSplit& split, const Reference* source, std::size_t count, Reference* left, Reference* right) {
-  return split.has_boxes ? scatter<false>(split, source, count, left, right)
-                         : scatter<true>(split, source, count, left, right);
 }
 
 }  // namespace
@@ -98,15 +43,15 @@ BuildRange ReferenceRanges::root(Executor& executor) const {
 
 void ReferenceRanges::measure(BuildRange& range, Executor& executor) const {
   const Reference* const source = references(range);
-  Measure total;
+  ReferenceBoxes total;
   if (range.size() <= kLargeRange) {
     total = measure_all(source, range.size());
   } else {
-    std::vector<Measure> parts(chunk_count(range.size()));
+    std::vector<ReferenceBoxes> parts(chunk_count(range.size()));
     executor.for_chunks(range.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
       parts[chunk] = measure_all(source + begin, end - begin);
     });
-    for (const Measure& part : parts) total.add(part);
+    for (const ReferenceBoxes& part : parts) total.add(part);
   }
   range.bounds = total.bounds;
   range.centroids2 = total.centroids2;
@@ -145,19 +90,19 @@ void ReferenceRanges::partition(const RangeSplit& split, const BuildRange& range
   left.buffer = right.buffer = 1 - range.buffer;
   const Reference* const source = references(range);
   Reference* const target = buffers_[left.buffer].data();
-  Sides sides;
+  ReferenceSides sides;
   if (range.size() <= kLargeRange) {
-    sides = scatter(split, source, range.size(), target + range.first, target + split.mid);
+    sides = reference_kernels().part(split, source, range.size(), target + range.first, target + split.mid);
   } else {
-    std::vector<Sides> parts(split.left_per_chunk.size());
+    std::vector<ReferenceSides> parts(split.left_per_chunk.size());
     std::vector<std::uint32_t> left_begin(parts.size() + 1);
     for (std::size_t i = 0; i < parts.size(); ++i) left_begin[i + 1] = left_begin[i] + split.left_per_chunk[i];
     executor.for_chunks(range.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
       const std::size_t before = left_begin[chunk];
-      parts[chunk] = scatter(split, source + begin, end - begin, target + range.first + before,
-                             target + split.mid + (begin - before));
+      parts[chunk] = reference_kernels().part(split, source + begin, end - begin, target + range.first + before,
+                                              target + split.mid + (begin - before));
     });
-    for (const Sides& part : parts) sides.left.add(part.left), sides.right.add(part.right);
+    for (const ReferenceSides& part : parts) sides.left.add(part.left), sides.right.add(part.right);
   }
   left.bounds = split.has_boxes ? split.left : sides.left.bounds;
   right.bounds = split.has_boxes ? split.right : sides.right.bounds;

@@ -27,6 +27,26 @@ struct RangeSplit {
   bool is_leaf() const { return kind == Kind::leaf; }
 };
 
+/// Boxes of references and of their (doubled) centroids.
+struct ReferenceBoxes {
+  Box4 bounds = Box4::empty(), centroids2 = Box4::empty();
+
+  void add(const refs::Reference& reference, Float4 mask) {
+    const Box4 box = Box4::of(reference);
+    bounds.grow(box);
+    centroids2.grow(centroid2(box, mask));
+  }
+  void add(const ReferenceBoxes& other) {
+    bounds.grow(other.bounds);
+    centroids2.grow(other.centroids2);
+  }
+};
+
+/// Both sides of a partition.
+struct ReferenceSides {
+  ReferenceBoxes left, right;
+};
+
 class ReferenceRanges {
  public:
   /// Takes the references; needs as much memory again.

@@ -1,8 +1,7 @@
 // The kernels of each layout, by Highway target bit.
 #pragma once
 
-#include <hwy/targets.h>
-
+#include "base/simd_dispatch.h"
 #include "boxwood/queries.h"
 
 namespace boxwood::queries {
@@ -18,13 +17,5 @@ TraversalKernels unending_kernels(Mode mode);
 TraversalKernels packet4_kernels(Mode mode);
 TraversalKernels range_kernels(Mode mode);
 TraversalKernels partition_kernels(Mode mode);
-
-/// Place of a target in the tables HWY_EXPORT makes. A dispatcher of our own, so that forcing an instruction set
-/// changes nothing for other users of Highway in the process.
-inline std::size_t dispatch_index(std::int64_t target) {
-  hwy::ChosenTarget chosen;
-  chosen.Update(target);
-  return chosen.GetIndex();
-}
 
 }  // namespace boxwood::queries

@@ -1,7 +1,7 @@
 // The kernels of layout `wide8`, for each instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "queries/kernels/wide8.cpp"
-#include "queries/kernels/targets.h"
+#include "base/simd_targets.h"
 // clang-format off
 #include <hwy/foreach_target.h>
 // clang-format on
