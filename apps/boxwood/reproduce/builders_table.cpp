@@ -11,6 +11,9 @@ namespace {
 /// Layout and ray counts of everyday use.
 constexpr const char* kLayout = "wide8";
 
+/// Columns.
+constexpr std::size_t kBuildColumn = 0, kRandomColumn = 7;
+
 /// Geometric means over the meshes, over one builder.
 struct Means {
   double log_build = 0, log_speed = 0;
@@ -39,10 +42,12 @@ Result<TableResult> compare_builders(Laboratory& laboratory, const std::vector<S
   table.id = "builders";
   table.title = "build time against ray speed of all builders";
   table.notes = {
-      fmt::format("Layout {}, robust mode. Build: references and tree on {} threads. Rays: {}x{} primary and {} "
-                  "random rays on one thread, median of {}; nodes and triangles per random ray.",
-                  kLayout, laboratory.session().threads(), laboratory.effort().width, laboratory.effort().height,
-                  laboratory.effort().random_rays, laboratory.effort().repeat),
+      fmt::format(
+          "Layout {}, robust mode. Build: references and tree on {} threads, medians of 3 to 15 rounds in turns "
+          "(builds of over a second: once). Rays: {}x{} primary and {} random rays on one thread, median of {}; "
+          "nodes and triangles per random ray.",
+          kLayout, laboratory.session().threads(), laboratory.effort().width, laboratory.effort().height,
+          laboratory.effort().random_rays, laboratory.effort().repeat),
       "C_T = 2, C_I = 3. EPO: end-point overlap (Aila, Karras and Laine 2013)."};
   table.labels = {"mesh", "builder"};
   table.baseline = "sweep-sah";
@@ -59,8 +64,11 @@ Result<TableResult> compare_builders(Laboratory& laboratory, const std::vector<S
   for (const Subject& subject : subjects) {
     std::optional<double> base_build, base_speed;
     std::vector<std::pair<std::string, std::pair<double, double>>> points;
-    for (const auto& builder : builders::registry()) {
-      const Method method{builder.id, popov_cost(), "none", kLayout};
+    const std::size_t first_row = table.rows.size();
+    std::vector<Method> methods;
+    for (const auto& builder : builders::registry()) methods.push_back({builder.id, popov_cost(), "none", kLayout});
+    for (const Method& method : methods) {
+      const builders::BuilderInfo& builder = *builders::find(method.builder);
       Row row{{subject.label, builder.id}, std::vector<Cell>(table.columns.size())};
       const std::string reason = laboratory.left_out(subject, method);
       if (!reason.empty()) {
@@ -76,13 +84,28 @@ Result<TableResult> compare_builders(Laboratory& laboratory, const std::vector<S
       if (!primary) return primary.error();
       const auto random = laboratory.trace(subject, method, Rays::random);
       if (!random) return random.error();
-      const double values[] = {
-          built->milliseconds, built->surface_area_cost, *overlap,       static_cast<double>(built->references),
-          random->nodes,       random->primitives,       primary->mrays, random->mrays};
+      const double values[] = {0,
+                               built->surface_area_cost,
+                               *overlap,
+                               static_cast<double>(built->references),
+                               random->nodes,
+                               random->primitives,
+                               primary->mrays,
+                               random->mrays};
       for (std::size_t c = 0; c < row.cells.size(); ++c) row.cells[c].ours = values[c];
-      if (builder.id == table.baseline) base_build = built->milliseconds, base_speed = random->mrays;
-      points.push_back({builder.id, {built->milliseconds, random->mrays}});
       table.rows.push_back(std::move(row));
+    }
+    // Last, since the trees of large meshes are too many to keep them all.
+    if (Status status = laboratory.time_builds_in_turns(subject, methods); !status) return status.error();
+    for (std::size_t m = 0; m < methods.size(); ++m) {
+      Row& row = table.rows[first_row + m];
+      if (!row.cells[kBuildColumn].ours) continue;
+      const auto built = laboratory.build(subject, methods[m]);
+      if (!built) return built.error();
+      const double speed = *row.cells[kRandomColumn].ours;
+      row.cells[kBuildColumn].ours = built->milliseconds;
+      if (methods[m].builder == table.baseline) base_build = built->milliseconds, base_speed = speed;
+      points.push_back({methods[m].builder, {built->milliseconds, speed}});
     }
     if (!base_build || !base_speed) continue;
     for (const auto& [id, point] : points) {

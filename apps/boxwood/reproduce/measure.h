@@ -35,7 +35,7 @@ struct Subject {
 enum class Rays { primary, random, lines };
 
 struct BuildResult {
-  double milliseconds = 0;  ///< references, pre-split and tree, all threads
+  double milliseconds = 0;  ///< references, pre-split and tree, all threads; median
   double surface_area_cost = 0;
   std::size_t references = 0, primitives = 0;
   std::size_t bytes = 0;  ///< of the layout
@@ -74,6 +74,9 @@ class Laboratory {
   /// Not empty: why this build is left out, with what it would take.
   std::string left_out(const Subject& subject, const Method& method) const;
   Result<BuildResult> build(const Subject& subject, const Method& method);
+  /// Builds the short ones of the methods again, in turns, so that what slows the machine for a while slows all of
+  /// them: `build` gives the medians of these from then on.
+  Status time_builds_in_turns(const Subject& subject, const std::vector<Method>& methods);
   Result<TraceResult> trace(const Subject& subject, const Method& method, Rays rays,
                             const queries::TraversalOptions& traversal = {});
   /// End-point overlap of the tree (Aila, Karras and Laine 2013).
@@ -84,7 +87,6 @@ class Laboratory {
     std::string key;
     tree::BinaryTree tree;
     std::optional<Accel> accel;
-    BuildResult result;
   };
   /// From the latest ones, or built now.
   Result<const Tree*> tree(const Subject& subject, const Method& method);
