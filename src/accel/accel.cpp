@@ -86,8 +86,10 @@ struct Accel::State {
   Status batch(std::span<const Ray> rays, const queries::BatchAnswers& answers, queries::Mode mode,
                queries::Traversal traversal) const {
     const auto cut = queries::cut_batch(methods(mode), rays, traversal);
+    queries::FasterWay faster_way;
     return for_chunks(rays.size(), cut.chunk, [&](std::size_t begin, std::size_t n) {
-      queries::trace_batch(methods(mode), layout, traversal, cut.row, rays.subspan(begin, n), answers.from(begin));
+      queries::trace_batch(methods(mode), layout, traversal, cut.row, faster_way, rays.subspan(begin, n),
+                           answers.from(begin));
     });
   }
   Status closest(std::span<const Ray> rays, Hit* hits, Vec3* normals, queries::Counts* per_ray, queries::Mode mode,

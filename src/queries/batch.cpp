@@ -1,9 +1,9 @@
 // Chunks of a stream of rays: tiles of pixels go as coherent packets, what is not coherent as rays in flight or one by
-// one. Everything is decided from the rays and from counts of steps, never from time, and no decision changes an
-// answer.
+// one, whichever of the two is faster in this call. No decision changes an answer.
 #include "queries/batch.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <memory>
 
@@ -12,12 +12,15 @@ namespace {
 
 /// Rays in a chunk. Sorting wants many; more chunks share out better over threads.
 constexpr std::size_t kChunk = 8192, kSortedChunk = 32768;
-/// Rays for which one decision between rays in flight and single rays holds.
-constexpr std::size_t kPiece = 512;
-/// A ray that takes fewer steps than this on average is done before its start among others has paid.
-constexpr std::size_t kFewSteps = 6;
-/// Pieces that go one by one until rays in flight are tried again.
-constexpr std::size_t kRetry = 16;
+/// Rays that go in flight together, at most; few waste time at their end, when fewer and fewer are left. And those of
+/// scattered tiles, which are copied together.
+constexpr std::size_t kPiece = 2048, kCopiedPiece = 512;
+/// Rays that a trial takes for each way; fewer are not timed.
+constexpr std::size_t kTrial = 256, kLeastTrial = 128;
+/// Rays from one trial to the next: the first ones follow soon.
+constexpr std::size_t kFirstTrials = 4, kBetweenFirstTrials = 512, kBetweenTrials = 16384;
+/// So many incoherent tiles in a row, and of those that follow only one is looked at for each kUnseen taken as such.
+constexpr std::size_t kIncoherentRun = 8, kUnseen = 3;
 /// Tiles passed over, at most, until a packet is tried again where packets have given up.
 constexpr std::size_t kMostSkipped = 32;
 
@@ -108,9 +111,14 @@ std::size_t find_row(std::span<const Ray> rays, float size) {
 /// Traces a chunk piece by piece.
 class ChunkTracer {
  public:
-  ChunkTracer(const BatchMethods& methods, const layouts::Layout& layout, std::span<const Ray> rays,
-              const BatchAnswers& answers)
-      : methods_(methods), layout_(layout), rays_(rays), answers_(answers), size_(size_of(layout.bounds)) {}
+  ChunkTracer(const BatchMethods& methods, const layouts::Layout& layout, FasterWay& faster_way,
+              std::span<const Ray> rays, const BatchAnswers& answers)
+      : methods_(methods),
+        layout_(layout),
+        faster_way_(faster_way),
+        rays_(rays),
+        answers_(answers),
+        size_(size_of(layout.bounds)) {}
 
   /// Tiles of eight by eight where rows are known, else 64 rays in a row each. `always`: packets whatever the rays look
   /// like, and single rays where a packet refuses.
@@ -141,18 +149,26 @@ class ChunkTracer {
       methods_.single.closest(layout_, rays, count, a.hits, a.normals);
   }
 
-  std::size_t in_flight(const Ray* rays, std::size_t count, const BatchAnswers& a) const {
-    return a.any() ? methods_.batch.interleaved_any(layout_, rays, count, a.occluded)
-                   : methods_.batch.interleaved_closest(layout_, rays, count, a.hits, a.normals);
+  void in_flight(const Ray* rays, std::size_t count, const BatchAnswers& a) const {
+    if (a.any())
+      methods_.batch.interleaved_any(layout_, rays, count, a.occluded);
+    else
+      methods_.batch.interleaved_closest(layout_, rays, count, a.hits, a.normals);
   }
 
  private:
   enum class Outcome { done, coherent, incoherent };
 
-  /// Where packets give up they are tried ever more rarely, until one gets through.
+  /// Where packets give up they are tried ever more rarely, until one gets through; and tiles behind a run of
+  /// incoherent ones are not all looked at.
   Outcome packet(const Tile& tile, bool always) {
     if (!always) {
-      if (!looks_coherent(rays_.data(), tile, size_)) return Outcome::incoherent;
+      if (unseen_ > 0) return --unseen_, Outcome::incoherent;
+      if (!looks_coherent(rays_.data(), tile, size_)) {
+        if (++incoherent_ >= kIncoherentRun) unseen_ = kUnseen;
+        return Outcome::incoherent;
+      }
+      incoherent_ = 0;
       if (to_skip_ > 0) return --to_skip_, Outcome::coherent;
     }
     const BatchAnswers& a = answers_;
@@ -186,7 +202,7 @@ class ChunkTracer {
         single(rays_.data() + begin, tile.columns, answers_.from(begin));
         continue;
       }
-      if (rest_count_ + tile.columns > kPiece) flush_rest();
+      if (rest_count_ + tile.columns > kCopiedPiece) flush_rest();
       for (std::uint32_t column = 0; column < tile.columns; ++column, ++rest_count_)
         rest_[rest_count_] = rays_[begin + column], rest_places_[rest_count_] = begin + column;
     }
@@ -214,29 +230,43 @@ class ChunkTracer {
   }
 
   void piece(const Ray* rays, std::size_t count, const BatchAnswers& answers) {
-    if (!methods_.batch.interleaves || singles_left_ > 0) {
-      singles_left_ -= singles_left_ > 0;
-      return single(rays, count, answers);
+    if (!methods_.batch.interleaves) return single(rays, count, answers);
+    std::size_t tried = 0;
+    if (count >= 2 * kLeastTrial && faster_way_.try_both(count)) {
+      const std::size_t each = std::min(kTrial, count / 2);
+      using Clock = std::chrono::steady_clock;
+      using Time = std::chrono::duration<double>;
+      const auto start = Clock::now();
+      in_flight(rays, each, answers);
+      const auto middle = Clock::now();
+      single(rays + each, each, answers.from(each));
+      const auto end = Clock::now();
+      faster_way_.record(Time(middle - start).count(), Time(end - middle).count());
+      tried = 2 * each;
     }
-    if (in_flight(rays, count, answers) < kFewSteps * count) singles_left_ = kRetry;
+    if (faster_way_.is_in_flight())
+      in_flight(rays + tried, count - tried, answers.from(tried));
+    else
+      single(rays + tried, count - tried, answers.from(tried));
   }
 
   const BatchMethods& methods_;
   const layouts::Layout& layout_;
+  FasterWay& faster_way_;
   std::span<const Ray> rays_;
   const BatchAnswers& answers_;
   float size_;
-  std::size_t singles_left_ = 0, skipping_ = 0, to_skip_ = 0;
+  std::size_t skipping_ = 0, to_skip_ = 0, incoherent_ = 0, unseen_ = 0;
   std::size_t rest_count_ = 0;
-  Ray rest_[kPiece];
-  std::size_t rest_places_[kPiece];
-  Hit rest_hits_[kPiece];
-  Vec3 rest_normals_[kPiece];
-  std::uint8_t rest_occluded_[kPiece];
+  Ray rest_[kCopiedPiece];
+  std::size_t rest_places_[kCopiedPiece];
+  Hit rest_hits_[kCopiedPiece];
+  Vec3 rest_normals_[kCopiedPiece];
+  std::uint8_t rest_occluded_[kCopiedPiece];
 };
 
-void trace_sorted(const BatchMethods& methods, const layouts::Layout& layout, std::span<const Ray> rays,
-                  const BatchAnswers& answers) {
+void trace_sorted(const BatchMethods& methods, const layouts::Layout& layout, FasterWay& faster_way,
+                  std::span<const Ray> rays, const BatchAnswers& answers) {
   const std::size_t n = rays.size();
   AlignedBuffer<Ray> sorted(n);
   const auto places = std::make_unique_for_overwrite<std::uint32_t[]>(n);
@@ -246,7 +276,7 @@ void trace_sorted(const BatchMethods& methods, const layouts::Layout& layout, st
   std::vector<Vec3> normals(answers.normals ? n : 0);
   std::vector<std::uint8_t> occluded(answers.any() ? n : 0);
   BatchAnswers to{hits.data(), answers.normals ? normals.data() : nullptr, answers.any() ? occluded.data() : nullptr};
-  ChunkTracer(methods, layout, sorted.span(), to).in_flight(sorted.data(), n, to);
+  ChunkTracer(methods, layout, faster_way, sorted.span(), to).in_flight(sorted.data(), n, to);
   for (std::size_t i = 0; i < n; ++i) {
     if (answers.any())
       answers.occluded[places[i]] = occluded[i];
@@ -257,6 +287,24 @@ void trace_sorted(const BatchMethods& methods, const layouts::Layout& layout, st
 }
 
 }  // namespace
+
+bool FasterWay::try_both(std::size_t rays) {
+  std::size_t until = until_trial_.load(std::memory_order_relaxed);
+  if (until > rays) {
+    until_trial_.store(until - rays, std::memory_order_relaxed);
+    return false;
+  }
+  const bool is_early = trials_.fetch_add(1, std::memory_order_relaxed) < kFirstTrials;
+  until_trial_.store(is_early ? kBetweenFirstTrials : kBetweenTrials, std::memory_order_relaxed);
+  return true;
+}
+
+void FasterWay::record(double in_flight, double single) {
+  // Of two threads one may win: what the other saw is lost, no more. A turn of another process does not decide.
+  if (!(in_flight > 0 && single > 0)) return;
+  const auto seen = static_cast<float>(std::clamp(std::log2(in_flight / single), -1.0, 1.0));
+  log_ratio_.store(0.7f * log_ratio_.load(std::memory_order_relaxed) + 0.3f * seen, std::memory_order_relaxed);
+}
 
 BatchCut cut_batch(const BatchMethods& methods, std::span<const Ray> rays, Traversal traversal) {
   if (traversal == Traversal::sorted) return {0, kSortedChunk};
@@ -279,12 +327,12 @@ BatchCut cut_batch(const BatchMethods& methods, std::span<const Ray> rays, Trave
 }
 
 void trace_batch(const BatchMethods& methods, const layouts::Layout& layout, Traversal traversal, std::size_t row,
-                 std::span<const Ray> rays, const BatchAnswers& answers) {
-  ChunkTracer tracer(methods, layout, rays, answers);
+                 FasterWay& faster_way, std::span<const Ray> rays, const BatchAnswers& answers) {
+  ChunkTracer tracer(methods, layout, faster_way, rays, answers);
   if (!methods.has_batch) return tracer.single(rays.data(), rays.size(), answers);
-  if (traversal == Traversal::sorted) return trace_sorted(methods, layout, rays, answers);
+  if (traversal == Traversal::sorted) return trace_sorted(methods, layout, faster_way, rays, answers);
   if (traversal == Traversal::interleaved) {
-    (void)tracer.in_flight(rays.data(), rays.size(), answers);
+    tracer.in_flight(rays.data(), rays.size(), answers);
     return;
   }
   tracer.tiles(row, traversal == Traversal::coherent);

@@ -2,6 +2,7 @@
 // is chosen when, and the measurements behind it.
 #pragma once
 
+#include <atomic>
 #include <span>
 
 #include "boxwood/queries.h"
@@ -32,6 +33,23 @@ struct BatchCut {
 /// Looks at a few hundred rays of the stream. Deterministic.
 BatchCut cut_batch(const BatchMethods& methods, std::span<const Ray> rays, Traversal traversal);
 
+/// Which way through incoherent rays is faster in this call, in flight or one by one: that depends on the tree, the
+/// rays and the processor's caches, and answers do not depend on it. So now and then some rays go each way, against the
+/// clock. Of one call; its threads may share it.
+class FasterWay {
+ public:
+  /// Is it time to try both ways? `rays` are traced next, in any case.
+  bool try_both(std::size_t rays);
+  /// What both ways took for as many rays each, any unit.
+  void record(double in_flight, double single);
+  bool is_in_flight() const { return log_ratio_.load(std::memory_order_relaxed) < 0; }
+
+ private:
+  std::atomic<std::size_t> until_trial_{0};  ///< rays
+  std::atomic<std::uint32_t> trials_{0};
+  std::atomic<float> log_ratio_{-0.15f};  ///< of time in flight over time one by one, base 2, mostly of the last trials
+};
+
 /// Where the answers go: for a closest hit `hits` and perhaps `normals`, else `occluded`.
 struct BatchAnswers {
   Hit* hits = nullptr;
@@ -47,7 +65,7 @@ struct BatchAnswers {
 /// Traces one chunk. Memory besides a few kilobytes is allocated by `sorted` alone, in proportion to the chunk. Throws
 /// std::bad_alloc.
 void trace_batch(const BatchMethods& methods, const layouts::Layout& layout, Traversal traversal, std::size_t row,
-                 std::span<const Ray> rays, const BatchAnswers& answers);
+                 FasterWay& faster_way, std::span<const Ray> rays, const BatchAnswers& answers);
 
 /// Puts rays that start in the same place and go the same way next to each other: by octant, Morton code of the origin
 /// in `bounds` and coarse direction. `sorted` gets the rays, `places` where each of them stood; both as long as `rays`,

@@ -19,10 +19,9 @@ struct BatchKernels {
   /// One packet. False where its rays go too different ways: then the answers are still to be found.
   bool (*packet_closest)(const layouts::Layout&, const Ray* rays, const Tile&, Hit* hits, Vec3* normals);
   bool (*packet_any)(const layouts::Layout&, const Ray* rays, const Tile&, std::uint8_t* occluded);
-  /// Many rays in flight. Gives the number of steps (entries popped) that all rays took together.
-  std::size_t (*interleaved_closest)(const layouts::Layout&, const Ray* rays, std::size_t count, Hit* hits,
-                                     Vec3* normals);
-  std::size_t (*interleaved_any)(const layouts::Layout&, const Ray* rays, std::size_t count, std::uint8_t* occluded);
+  /// Many rays in flight.
+  void (*interleaved_closest)(const layouts::Layout&, const Ray* rays, std::size_t count, Hit* hits, Vec3* normals);
+  void (*interleaved_any)(const layouts::Layout&, const Ray* rays, std::size_t count, std::uint8_t* occluded);
   /// Whether `interleaved` is more than a loop over single rays on this instruction set.
   bool interleaves = false;
 };

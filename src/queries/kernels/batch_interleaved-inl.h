@@ -111,9 +111,7 @@ class Interleaved {
         depth_((layout.max_stack + 2 * W + 15) / 16 * 16),
         memory_(std::make_unique_for_overwrite<std::uint32_t[]>(2 * depth_ * kFlights)) {}
 
-  /// Gives the number of entries popped.
-  std::size_t run() {
-    std::size_t steps = 0;
+  void run() {
     std::uint32_t active[kFlights], active_count = 0;
     for (std::uint32_t slot = 0; slot < kFlights; ++slot) {
       words_[slot] = memory_.get() + 2 * slot * depth_;
@@ -123,7 +121,6 @@ class Interleaved {
     }
     std::uint32_t nodes[kFlights], leaves[kFlights], finished[kFlights];
     while (active_count) {
-      steps += active_count;
       std::uint32_t node_count = 0, leaf_count = 0, finished_count = 0;
       for (std::uint32_t i = 0; i < active_count; ++i) {
         const std::uint32_t slot = active[i];
@@ -153,7 +150,6 @@ class Interleaved {
         active[active_count] = slot, active_count += top_[slot] != 0;
       }
     }
-    return steps;
   }
 
  private:
@@ -310,23 +306,21 @@ class Interleaved {
 #endif  // at least eight lanes
 
 template <int W, class Leaf, bool kRobust>
-std::size_t interleaved_closest(const Layout& layout, const Ray* rays, std::size_t count, Hit* hits, Vec3* normals) {
+void interleaved_closest(const Layout& layout, const Ray* rays, std::size_t count, Hit* hits, Vec3* normals) {
 #if HWY_MAX_BYTES >= 32
   if constexpr (kInterleaves<W>)
     return Interleaved<W, Leaf, kRobust, false>(layout, rays, count, hits, normals, nullptr).run();
 #endif
   closest<W, Leaf, kRobust, false>(layout, rays, count, hits, normals, nullptr);
-  return 0;
 }
 
 template <int W, class Leaf, bool kRobust>
-std::size_t interleaved_any(const Layout& layout, const Ray* rays, std::size_t count, std::uint8_t* occluded) {
+void interleaved_any(const Layout& layout, const Ray* rays, std::size_t count, std::uint8_t* occluded) {
 #if HWY_MAX_BYTES >= 32
   if constexpr (kInterleaves<W>)
     return Interleaved<W, Leaf, kRobust, true>(layout, rays, count, nullptr, nullptr, occluded).run();
 #endif
   any<W, Leaf, kRobust, false>(layout, rays, count, occluded, nullptr);
-  return 0;
 }
 
 }  // namespace boxwood::queries::HWY_NAMESPACE
