@@ -34,6 +34,12 @@ TEST(FasterWay, TriesBothAtOnceAndThenRarely) {
   for (int i = 0; i < 1024; ++i) trials += way.try_both(512);
   EXPECT_GE(trials, 512 * 1024 / 32768);
   EXPECT_LE(trials, 512 * 1024 / 8192);
+
+  for (int i = 0; i < 20; ++i) way.record(1, 2);
+  int clear_trials = 0;
+  for (int i = 0; i < 1024; ++i) clear_trials += way.try_both(512);
+  EXPECT_GE(clear_trials, 1);
+  EXPECT_LT(2 * clear_trials, trials);
 }
 
 }  // namespace
