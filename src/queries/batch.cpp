@@ -109,6 +109,22 @@ std::size_t find_row(std::span<const Ray> rays, float size) {
   return 2 * least < mean_difference(rays, 16, size) ? best : 0;
 }
 
+void trace_single(const BatchMethods& methods, const layouts::Layout& layout, const Ray* rays, std::size_t count,
+                  const BatchAnswers& a) {
+  if (a.any())
+    methods.single.any(layout, rays, count, a.occluded);
+  else
+    methods.single.closest(layout, rays, count, a.hits, a.normals);
+}
+
+void trace_in_flight(const BatchMethods& methods, const layouts::Layout& layout, const Ray* rays, std::size_t count,
+                     const BatchAnswers& a) {
+  if (a.any())
+    methods.batch.interleaved_any(layout, rays, count, a.occluded);
+  else
+    methods.batch.interleaved_closest(layout, rays, count, a.hits, a.normals);
+}
+
 /// Traces a chunk piece by piece.
 class ChunkTracer {
  public:
@@ -138,25 +154,6 @@ class ChunkTracer {
     flush_rest();
   }
 
-  void incoherent(std::span<const Ray> rays, const BatchAnswers& answers) {
-    for (std::size_t begin = 0; begin < rays.size(); begin += kPiece)
-      piece(rays.data() + begin, std::min(kPiece, rays.size() - begin), answers.from(begin));
-  }
-
-  void single(const Ray* rays, std::size_t count, const BatchAnswers& a) const {
-    if (a.any())
-      methods_.single.any(layout_, rays, count, a.occluded);
-    else
-      methods_.single.closest(layout_, rays, count, a.hits, a.normals);
-  }
-
-  void in_flight(const Ray* rays, std::size_t count, const BatchAnswers& a) const {
-    if (a.any())
-      methods_.batch.interleaved_any(layout_, rays, count, a.occluded);
-    else
-      methods_.batch.interleaved_closest(layout_, rays, count, a.hits, a.normals);
-  }
-
  private:
   enum class Outcome { done, coherent, incoherent };
 
@@ -178,6 +175,11 @@ class ChunkTracer {
     skipping_ = done ? 0 : std::min(kMostSkipped, 2 * skipping_ + 1);
     to_skip_ = skipping_;
     return done ? Outcome::done : Outcome::coherent;
+  }
+
+  void incoherent(std::span<const Ray> rays, const BatchAnswers& answers) {
+    for (std::size_t begin = 0; begin < rays.size(); begin += kPiece)
+      piece(rays.data() + begin, std::min(kPiece, rays.size() - begin), answers.from(begin));
   }
 
   void strips(bool always) {
@@ -251,6 +253,13 @@ class ChunkTracer {
       single(rays + tried, count - tried, answers.from(tried));
   }
 
+  void single(const Ray* rays, std::size_t count, const BatchAnswers& answers) const {
+    trace_single(methods_, layout_, rays, count, answers);
+  }
+  void in_flight(const Ray* rays, std::size_t count, const BatchAnswers& answers) const {
+    trace_in_flight(methods_, layout_, rays, count, answers);
+  }
+
   const BatchMethods& methods_;
   const layouts::Layout& layout_;
   FasterWay& faster_way_;
@@ -266,8 +275,8 @@ class ChunkTracer {
   std::uint8_t rest_occluded_[kCopiedPiece];
 };
 
-void trace_sorted(const BatchMethods& methods, const layouts::Layout& layout, FasterWay& faster_way,
-                  std::span<const Ray> rays, const BatchAnswers& answers) {
+void trace_sorted(const BatchMethods& methods, const layouts::Layout& layout, std::span<const Ray> rays,
+                  const BatchAnswers& answers) {
   const std::size_t n = rays.size();
   AlignedBuffer<Ray> sorted(n);
   const auto places = std::make_unique_for_overwrite<std::uint32_t[]>(n);
@@ -277,7 +286,7 @@ void trace_sorted(const BatchMethods& methods, const layouts::Layout& layout, Fa
   std::vector<Vec3> normals(answers.normals ? n : 0);
   std::vector<std::uint8_t> occluded(answers.any() ? n : 0);
   BatchAnswers to{hits.data(), answers.normals ? normals.data() : nullptr, answers.any() ? occluded.data() : nullptr};
-  ChunkTracer(methods, layout, faster_way, sorted.span(), to).in_flight(sorted.data(), n, to);
+  trace_in_flight(methods, layout, sorted.data(), n, to);
   for (std::size_t i = 0; i < n; ++i) {
     if (answers.any())
       answers.occluded[places[i]] = occluded[i];
@@ -333,14 +342,10 @@ BatchCut cut_batch(const BatchMethods& methods, std::span<const Ray> rays, Trave
 
 void trace_batch(const BatchMethods& methods, const layouts::Layout& layout, Traversal traversal, std::size_t row,
                  FasterWay& faster_way, std::span<const Ray> rays, const BatchAnswers& answers) {
-  ChunkTracer tracer(methods, layout, faster_way, rays, answers);
-  if (!methods.has_batch) return tracer.single(rays.data(), rays.size(), answers);
-  if (traversal == Traversal::sorted) return trace_sorted(methods, layout, faster_way, rays, answers);
-  if (traversal == Traversal::interleaved) {
-    tracer.in_flight(rays.data(), rays.size(), answers);
-    return;
-  }
-  tracer.tiles(row, traversal == Traversal::coherent);
+  if (!methods.has_batch) return trace_single(methods, layout, rays.data(), rays.size(), answers);
+  if (traversal == Traversal::sorted) return trace_sorted(methods, layout, rays, answers);
+  if (traversal == Traversal::interleaved) return trace_in_flight(methods, layout, rays.data(), rays.size(), answers);
+  ChunkTracer(methods, layout, faster_way, rays, answers).tiles(row, traversal == Traversal::coherent);
 }
 
 }  // namespace boxwood::queries
