@@ -43,11 +43,11 @@ Result<TableResult> compare_builders(Laboratory& laboratory, const std::vector<S
   table.title = "build time against ray speed of all builders";
   table.notes = {
       fmt::format(
-          "Layout {}, robust mode. Build: references and tree on {} threads, medians of 3 to 15 rounds in turns "
-          "(builds of over a second: once). Rays: {}x{} primary and {} random rays on one thread, median of {}; "
+          "Layout {}, robust mode. Build: references and tree on {} threads, medians of {} rounds in turns or "
+          "more (builds of over a second: once). Rays: {}x{} primary and {} random rays on one thread, median of {}; "
           "nodes and triangles per random ray.",
-          kLayout, laboratory.session().threads(), laboratory.effort().width, laboratory.effort().height,
-          laboratory.effort().random_rays, laboratory.effort().repeat),
+          kLayout, laboratory.session().threads(), laboratory.effort().repeat, laboratory.effort().width,
+          laboratory.effort().height, laboratory.effort().random_rays, laboratory.effort().repeat),
       "C_T = 2, C_I = 3. EPO: end-point overlap (Aila, Karras and Laine 2013)."};
   table.labels = {"mesh", "builder"};
   table.baseline = "sweep-sah";

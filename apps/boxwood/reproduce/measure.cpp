@@ -20,7 +20,7 @@ constexpr double kShortestTrace = 0.05;
 
 /// Seconds; builds that take longer are not repeated in turns, and rounds of the others take about kTurnsTime.
 constexpr double kShortBuild = 1, kTurnsTime = 10;
-constexpr std::size_t kFewestTurns = 3, kMostTurns = 15;
+constexpr std::size_t kMostTurns = 15;
 
 /// Seconds a million triangles take on two cores, measured; the builders that are not named take about three.
 struct Rate {
@@ -163,7 +163,8 @@ Status Laboratory::time_builds_in_turns(const Subject& subject, const std::vecto
     round += 1e-3 * result.milliseconds;
   }
   if (turns.empty()) return {};
-  const auto rounds = std::clamp(static_cast<std::size_t>(kTurnsTime / round), kFewestTurns, kMostTurns);
+  const auto fewest = static_cast<std::size_t>(effort_.repeat);
+  const auto rounds = std::max(fewest, std::min(static_cast<std::size_t>(kTurnsTime / round), kMostTurns));
   for (std::size_t i = 0; i < rounds; ++i) {
     for (Turn& turn : turns) {
       const double start = now();

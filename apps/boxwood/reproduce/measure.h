@@ -75,7 +75,7 @@ class Laboratory {
   std::string left_out(const Subject& subject, const Method& method) const;
   Result<BuildResult> build(const Subject& subject, const Method& method);
   /// Builds the short ones of the methods again, in turns, so that what slows the machine for a while slows all of
-  /// them: `build` gives the medians of these from then on.
+  /// them: `build` gives the medians of these from then on. At least the effort's `repeat` rounds, more of short ones.
   Status time_builds_in_turns(const Subject& subject, const std::vector<Method>& methods);
   Result<TraceResult> trace(const Subject& subject, const Method& method, Rays rays,
                             const queries::TraversalOptions& traversal = {});
