@@ -88,7 +88,8 @@ struct AccelOptions {
   std::string optimizer = {};  ///< how to better the tree: what optimizers::parse_optimizer reads; empty: the level's
   std::string layout = {};     ///< id of layouts::registry; empty: queries::default_layout
   /// Wide layouts: what visiting a node costs against testing one block of triangles, above 0 (0: the layout's own,
-  /// layouts::node_cost), and the most blocks of a leaf, 1 to 8 (docs/collapse.md). `linear` has no use for them.
+  /// layouts::node_cost), and the most blocks of a leaf, 1 to 8 (docs/collapse.md; leaves of `wide8-quads` end at 32
+  /// triangles). `linear` has no use for them.
   float node_cost = 0;
   int max_leaf_blocks = 4;
   std::string isa = {};  ///< empty = environment variable BOXWOOD_ISA, or the best the processor has

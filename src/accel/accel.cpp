@@ -39,6 +39,8 @@ Result<layouts::Layout> encode_tree(layouts::LayoutId id, const tree::BinaryTree
     if (auto status = layouts::check_references(tree.references.span(), mesh, executor); !status) return status.error();
     // Both triangles of a block's four quads are tested in one go, or nearly.
     options.block = 8;
+    // A leaf's triangles are paired by words of 32 bits. (Above 8 is the caller's mistake, which the collapse reports.)
+    if (options.max_leaf_blocks <= 8) options.max_leaf_blocks = std::min(options.max_leaf_blocks, 4);
     options.leaf_blocks = [&](std::span<const std::uint32_t> references) {
       return layouts::quad_blocks(references, mesh);
     };

@@ -10,7 +10,8 @@
 // the float signs only decide whether there is a hit; where it is (t, u, v) is computed in double precision from the
 // mesh's own corners. The paper's t can be off by some 1e-6 of the triangle's size when the ray grazes it, enough for a
 // triangle behind the origin to be taken for one in front, and then the answer depends on which boxes happened to be
-// opened. `fast`: Moeller and Trumbore 1997 (bib key moller1997).
+// opened. `fast`: Moeller and Trumbore 1997 (bib key moller1997); t and the determinant must have one sign, or t be
+// zero.
 #pragma once
 
 #include "boxwood/math.h"
@@ -95,7 +96,8 @@ class Location {
     }
     t_ = (weights_.u * z[0] + weights_.v * z[1] + weights_.w * z[2]) / (sum_ * dz);
   }
-  float t() const { return static_cast<float>(t_); }
+  /// Never -0: which zero it is would depend on the triangle's winding and on the instruction set.
+  float t() const { return static_cast<float>(t_) + 0.0f; }
   /// u and v, times sum(): the division can wait until the hit has turned out to be the nearest.
   double u_times_sum() const { return weights_.v; }
   double v_times_sum() const { return weights_.w; }
@@ -115,11 +117,14 @@ inline bool fast_test(const Triangle& triangle, const RaySetup& ray, TriangleHit
   const Vec3 q = cross(s, e1);
   const float u = dot(s, p), v = dot(d, q);
   const float w = determinant - u - v;
-  if (!(minimum(minimum(u, v), w) >= 0 || maximum(maximum(u, v), w) <= 0) || determinant == 0) return false;
+  const float along = dot(e2, q);  // t times the determinant
+  if (!(minimum(minimum(u, v), minimum(w, along)) >= 0 || maximum(maximum(u, v), maximum(w, along)) <= 0) ||
+      determinant == 0)
+    return false;
   const float r = 1.0f / determinant;
   hit.u = u * r;
   hit.v = v * r;
-  hit.t = dot(e2, q) * r;
+  hit.t = along * r;
   return true;
 }
 

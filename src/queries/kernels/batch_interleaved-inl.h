@@ -276,14 +276,15 @@ class Interleaved {
 
   HWY_INLINE void visit_leaf(std::uint32_t slot) {
     Flight& flight = flights_[slot];
-    const std::uint32_t word = word_[slot], first = layouts::leaf_first(word), left = layouts::leaf_blocks(word) - 1;
-    // The entry is still where it was popped, with its distance; the word stands for the blocks behind this one.
-    words_[slot][top_[slot]] = layouts::kLeafBit | (left - 1) << 28 | (first + 1);
-    top_[slot] += left != 0;
-    if constexpr (kRobust)
-      Leaf::template robust<kAny>(blocks_[first], flight.setup, flight.best);
+    const std::uint32_t word = word_[slot], first = layouts::leaf_first(word), count = layouts::leaf_blocks(word);
+    // The entry is still where it was popped, with its distance; the word stands for the blocks behind these.
+    constexpr std::uint32_t kAtOnce = Leaf::kPairs ? 2 : 1;
+    words_[slot][top_[slot]] = layouts::kLeafBit | (count - kAtOnce - 1) << 28 | (first + kAtOnce);
+    top_[slot] += count > kAtOnce;
+    if constexpr (Leaf::kPairs)
+      Leaf::template two<kRobust, kAny>(blocks_[first], blocks_[first + (count > 1)], flight.setup, flight.best);
     else
-      Leaf::template fast<kAny>(blocks_[first], flight.setup, flight.best);
+      Leaf::template one<kRobust, kAny>(blocks_[first], flight.setup, flight.best);
     if constexpr (kAny) top_[slot] = flight.best.block ? 1 : top_[slot];
   }
 

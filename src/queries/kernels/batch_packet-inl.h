@@ -238,7 +238,7 @@ class PacketTraversal {
       const auto sum = hn::Add(hn::Add(u, v), w);
       const auto t = hn::Div(hn::Add(hn::Add(hn::Mul(u, z0), hn::Mul(v, z1)), hn::Mul(w, z2)), hn::Mul(sum, dz));
       std::uint32_t sound = wanted & double_bits(dd, hn::Gt(sum, zero));
-      shorter |= take(block, lane, at, sound, hn::DemoteTo(df, t), v, w, sum);
+      shorter |= take(block, lane, at, sound, hn::Add(hn::DemoteTo(df, t), hn::Zero(df)), v, w, sum);
       for (sound ^= wanted; sound; sound &= sound - 1)
         shorter |= locate_edge_on(block, lane, at + std::countr_zero(sound));
     }
@@ -321,10 +321,11 @@ class PacketTraversal {
       const auto u = dot_without_fusing(d, sx, sy, sz, px, py, pz);
       const auto v = dot_without_fusing(d, dx, dy, dz, qx, qy, qz);
       const auto w = hn::Sub(hn::Sub(determinant, u), v);
-      const auto inside = hn::And(active, hn::And(same_sign(d, u, v, w), hn::Ne(determinant, hn::Zero(d))));
+      const auto along = dot_without_fusing(d, e2x, e2y, e2z, qx, qy, qz);
+      const auto inside = hn::And(active, hn::And(same_sign(d, u, v, w, along), hn::Ne(determinant, hn::Zero(d))));
       if (HWY_LIKELY(hn::AllFalse(d, inside))) continue;
       const auto r = hn::Div(hn::Set(d, 1.0f), determinant);
-      const auto t = hn::Mul(dot_without_fusing(d, e2x, e2y, e2z, qx, qy, qz), r);
+      const auto t = hn::Mul(along, r);
       shorter |= take_fast(block, lane, i, inside, t, hn::Mul(u, r), hn::Mul(v, r));
     }
     return shorter;

@@ -37,11 +37,17 @@ struct Best {
   }
 };
 
-/// Lanes whose edge functions u, v, w have one sign. NaN lanes are out.
+/// Lanes in which all numbers have one sign. NaN lanes are out.
 template <class D, class V>
 HWY_INLINE auto same_sign(D d, V u, V v, V w) {
   const auto zero = hn::Zero(d);
   return hn::Or(hn::Ge(hn::Min(hn::Min(u, v), w), zero), hn::Le(hn::Max(hn::Max(u, v), w), zero));
+}
+template <class D, class V>
+HWY_INLINE auto same_sign(D d, V u, V v, V w, V x) {
+  const auto zero = hn::Zero(d);
+  return hn::Or(hn::Ge(hn::Min(hn::Min(u, v), hn::Min(w, x)), zero),
+                hn::Le(hn::Max(hn::Max(u, v), hn::Max(w, x)), zero));
 }
 
 /// The mask's bits, of up to 16 lanes.
@@ -55,14 +61,32 @@ HWY_INLINE std::uint64_t mask_bits(D d, hn::Mask<D> mask) {
   return two;
 }
 
+/// Where the lanes of a vector stand: in one block, from a lane on.
+template <class Block>
+struct BlockLanes {
+  const Block* own;
+  int first_lane;
+  HWY_INLINE const Block& block(int) const { return *own; }
+  HWY_INLINE int lane(int i) const { return first_lane + i; }
+};
+
+/// The same for eight lanes of two blocks of four. The second may be the first once more: a triangle is no better a hit
+/// than itself.
+template <class Block>
+struct PairLanes {
+  const Block *low, *high;
+  HWY_INLINE const Block& block(int i) const { return i < 4 ? *low : *high; }
+  HWY_INLINE int lane(int i) const { return i & 3; }
+};
+
 /// Hands the lanes of `mask` to `best`, lowest lane first. Any hit will do for `kAny`: there only best.block is set.
-template <class Leaf, bool kAny, class D, class V>
-HWY_INLINE void offer_lanes(D d, std::uint64_t mask, V t, V u, V v, const typename Leaf::Block& block, int first_lane,
-                            const RaySetup& ray, Best<Leaf>& best) {
+template <class Leaf, bool kAny, class At, class D, class V>
+HWY_INLINE void offer_lanes(D d, std::uint64_t mask, V t, V u, V v, const At& at, const RaySetup& ray,
+                            Best<Leaf>& best) {
   mask &= mask_bits(d, hn::And(hn::Ge(t, hn::Set(d, ray.tmin)), hn::Le(t, hn::Set(d, best.t))));
   if (!mask) return;
   if constexpr (kAny) {
-    best.block = &block;
+    best.block = &at.block(0);
     return;
   }
   alignas(64) float ts[8], us[8], vs[8];
@@ -70,9 +94,10 @@ HWY_INLINE void offer_lanes(D d, std::uint64_t mask, V t, V u, V v, const typena
   hn::Store(u, d, us);
   hn::Store(v, d, vs);
   for (; mask; mask &= mask - 1) {
-    const int lane = std::countr_zero(mask);
-    const std::uint32_t id = Leaf::primitive(block, first_lane + lane);
-    if (best.takes(ts[lane], ray.tmin, id)) best = {ts[lane], id, &block, first_lane + lane, us[lane], vs[lane], 1};
+    const int i = std::countr_zero(mask);
+    const auto& block = at.block(i);
+    const std::uint32_t id = Leaf::primitive(block, at.lane(i));
+    if (best.takes(ts[i], ray.tmin, id)) best = {ts[i], id, &block, at.lane(i), us[i], vs[i], 1};
   }
 }
 
@@ -144,7 +169,7 @@ HWY_INLINE void consider(const typename Leaf::Block& block, int lane, bool doubt
   if (HWY_UNLIKELY(std::max(positive, negative) != 7))  // one question: which of the two it is is a bad guess
     return consider_with_care<Leaf>(block, lane, doubtful, ray, best);
   const double sum = sum_of_three(edges);
-  const auto t = static_cast<float>(sum_of_three(hn::Mul(edges, z)) / (sum * ray.direction[ray.kz]));
+  const auto t = static_cast<float>(sum_of_three(hn::Mul(edges, z)) / (sum * ray.direction[ray.kz])) + 0.0f;
   const std::uint32_t id = Leaf::primitive(block, lane);
   if (!best.takes(t, ray.tmin, id)) return;
   const auto low = hn::LowerHalf(half, edges);
@@ -154,9 +179,9 @@ HWY_INLINE void consider(const typename Leaf::Block& block, int lane, bool doubt
 
 /// The robust test from the edge functions on: u, v and w of the corners a, b and c, with any sign common to all three,
 /// and the corners' distances along the ray's main axis.
-template <class Leaf, bool kAny, class D, class V>
-HWY_INLINE void robust_lanes(D d, V u, V v, V w, V az, V bz, V cz, const typename Leaf::Block& block, int first_lane,
-                             const RaySetup& ray, Best<Leaf>& best) {
+template <class Leaf, bool kAny, class At, class D, class V>
+HWY_INLINE void robust_lanes(D d, V u, V v, V w, V az, V bz, V cz, const At& at, const RaySetup& ray,
+                             Best<Leaf>& best) {
   const auto tiny = hn::Le(hn::Min(hn::Min(hn::Abs(u), hn::Abs(v)), hn::Abs(w)), hn::Set(d, kTinyEdgeFunction));
   const std::uint64_t doubtful = mask_bits(d, tiny);
   const std::uint64_t found = mask_bits(d, same_sign(d, u, v, w)) | doubtful;
@@ -165,7 +190,7 @@ HWY_INLINE void robust_lanes(D d, V u, V v, V w, V az, V bz, V cz, const typenam
   const auto scale = hn::Set(d, ray.inverse_z);
   const auto nearest = hn::Min(hn::Min(hn::Mul(az, scale), hn::Mul(bz, scale)), hn::Mul(cz, scale));
   const auto limit = hn::Set(d, best.t * (1 + 8 * 0x1p-24f));
-  std::uint64_t mask = found & mask_bits(d, hn::Le(nearest, limit)) & Leaf::used(d, block, first_lane);
+  std::uint64_t mask = found & mask_bits(d, hn::Le(nearest, limit)) & Leaf::used(d, at);
   if (!mask) return;
   if constexpr (kAny) {
     // And one that lies between tmin and tmax as a whole is hit, wherever exactly.
@@ -173,13 +198,13 @@ HWY_INLINE void robust_lanes(D d, V u, V v, V w, V az, V bz, V cz, const typenam
     const auto within = hn::And(hn::Gt(nearest, hn::Set(d, ray.tmin * (1 + 8 * 0x1p-24f))),
                                 hn::Lt(farthest, hn::Set(d, ray.tmax * (1 - 8 * 0x1p-24f))));
     if (const std::uint64_t sure = mask & ~doubtful & mask_bits(d, within)) {
-      best.block = &block;
+      best.block = &at.block(0);
       return;
     }
   }
   for (; mask; mask &= mask - 1) {
     const int i = std::countr_zero(mask);
-    consider<Leaf>(block, first_lane + i, doubtful >> i & 1, ray, best);
+    consider<Leaf>(at.block(i), at.lane(i), doubtful >> i & 1, ray, best);
   }
 }
 
@@ -188,10 +213,12 @@ HWY_INLINE V dot_without_fusing(D, V ax, V ay, V az, V bx, V by, V bz) {
   return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));
 }
 
-/// The fast test on triangles given by their first corner and the edges from there to the second and the third.
-template <class Leaf, bool kAny, class D, class V>
-HWY_INLINE void fast_lanes(D d, V v0x, V v0y, V v0z, V e1x, V e1y, V e1z, V e2x, V e2y, V e2z,
-                           const typename Leaf::Block& block, int first_lane, const RaySetup& ray, Best<Leaf>& best) {
+/// The fast test on triangles given by their first corner and the edges from there to the second and the third. That a
+/// hit lies in front of the origin is asked by its sign, before the branch: most rays start on a triangle, whose plane
+/// they meet right behind them, and that one would be a bad guess.
+template <class Leaf, bool kAny, class At, class D, class V>
+HWY_INLINE void fast_lanes(D d, V v0x, V v0y, V v0z, V e1x, V e1y, V e1z, V e2x, V e2y, V e2z, const At& at,
+                           const RaySetup& ray, Best<Leaf>& best) {
   const auto dx = hn::Set(d, ray.direction[0]), dy = hn::Set(d, ray.direction[1]), dz = hn::Set(d, ray.direction[2]);
   const auto px = hn::Sub(hn::Mul(dy, e2z), hn::Mul(dz, e2y));
   const auto py = hn::Sub(hn::Mul(dz, e2x), hn::Mul(dx, e2z));
@@ -206,72 +233,81 @@ HWY_INLINE void fast_lanes(D d, V v0x, V v0y, V v0z, V e1x, V e1y, V e1z, V e2x,
   const auto u = dot_without_fusing(d, sx, sy, sz, px, py, pz);
   const auto v = dot_without_fusing(d, dx, dy, dz, qx, qy, qz);
   const auto w = hn::Sub(hn::Sub(determinant, u), v);
-  const std::uint64_t inside = mask_bits(d, hn::And(same_sign(d, u, v, w), hn::Ne(determinant, hn::Zero(d))));
+  const auto along = dot_without_fusing(d, e2x, e2y, e2z, qx, qy, qz);
+  const std::uint64_t inside = mask_bits(d, hn::And(same_sign(d, u, v, w, along), hn::Ne(determinant, hn::Zero(d))));
   if (HWY_LIKELY(!inside)) return;
-  const std::uint64_t mask = inside & Leaf::used(d, block, first_lane);
+  const std::uint64_t mask = inside & Leaf::used(d, at);
   if (!mask) return;
   const auto r = hn::Div(hn::Set(d, 1.0f), determinant);
-  const auto t = hn::Mul(dot_without_fusing(d, e2x, e2y, e2z, qx, qy, qz), r);
-  offer_lanes<Leaf, kAny>(d, mask, t, hn::Mul(u, r), hn::Mul(v, r), block, first_lane, ray, best);
+  const auto t = hn::Mul(along, r);
+  offer_lanes<Leaf, kAny>(d, mask, t, hn::Mul(u, r), hn::Mul(v, r), at, ray, best);
 }
 
 /// What the traversal asks of a kind of leaf block; the other kind is in wide_quads-inl.h.
 struct TriangleLeaf {
   using Block = TriangleBlock;
+  /// Two blocks can be tested at once, with `two`.
+  static constexpr bool kPairs = HWY_MAX_BYTES >= 32;
 
   static HWY_INLINE std::uint32_t primitive(const Block& block, int lane) { return block.primitive[lane]; }
   /// In the mesh's order.
   static HWY_INLINE CornerAt corner(const Block& block, int lane, int k) { return {block.corner[k][0] + lane, 4}; }
   /// Lanes that hold a triangle, where the tests alone can't be trusted to pass over those that don't.
-  template <class D>
-  static HWY_INLINE std::uint64_t used(D, const Block&, int) {
+  template <class D, class At>
+  static HWY_INLINE std::uint64_t used(D, const At&) {
     return ~std::uint64_t{0};
   }
 
   template <class D>
-  static HWY_INLINE auto load_relative(D d, const Block& block, int k, int axis, int lane, const RaySetup& ray) {
-    return hn::Sub(hn::Load(d, block.corner[k][axis] + lane), hn::Set(d, ray.origin[axis]));
+  static HWY_INLINE auto load(D d, const BlockLanes<Block>& at, int k, int axis) {
+    return hn::Load(d, at.own->corner[k][axis] + at.first_lane);
   }
+#if HWY_MAX_BYTES >= 32
+  template <class D>
+  static HWY_INLINE auto load(D d, const PairLanes<Block>& at, int k, int axis) {
+    const hn::Half<D> half;
+    return hn::Combine(d, hn::Load(half, at.high->corner[k][axis]), hn::Load(half, at.low->corner[k][axis]));
+  }
+#endif
 
-  template <bool kAny>
-  static HWY_INLINE void robust(const Block& block, const RaySetup& ray, Best<TriangleLeaf>& best) {
-    const hn::CappedTag<float, 4> d;
-    const int step = static_cast<int>(hn::Lanes(d));
-    const auto shear_x = hn::Set(d, ray.shear_x), shear_y = hn::Set(d, ray.shear_y);
-    for (int lane = 0; lane < 4; lane += step) {
-      const auto az = load_relative(d, block, 0, ray.kz, lane, ray);
-      const auto bz = load_relative(d, block, 1, ray.kz, lane, ray);
-      const auto cz = load_relative(d, block, 2, ray.kz, lane, ray);
-      const auto ax = hn::Sub(load_relative(d, block, 0, ray.kx, lane, ray), hn::Mul(shear_x, az));
-      const auto bx = hn::Sub(load_relative(d, block, 1, ray.kx, lane, ray), hn::Mul(shear_x, bz));
-      const auto cx = hn::Sub(load_relative(d, block, 2, ray.kx, lane, ray), hn::Mul(shear_x, cz));
-      const auto ay = hn::Sub(load_relative(d, block, 0, ray.ky, lane, ray), hn::Mul(shear_y, az));
-      const auto by = hn::Sub(load_relative(d, block, 1, ray.ky, lane, ray), hn::Mul(shear_y, bz));
-      const auto cy = hn::Sub(load_relative(d, block, 2, ray.ky, lane, ray), hn::Mul(shear_y, cz));
+  template <bool kRobust, bool kAny, class D, class At>
+  static HWY_INLINE void test(D d, const At& at, const RaySetup& ray, Best<TriangleLeaf>& best) {
+    if constexpr (kRobust) {
+      const auto shear_x = hn::Set(d, ray.shear_x), shear_y = hn::Set(d, ray.shear_y);
+      const auto relative = [&](int k, int axis)
+                                HWY_ATTR { return hn::Sub(load(d, at, k, axis), hn::Set(d, ray.origin[axis])); };
+      const auto az = relative(0, ray.kz), bz = relative(1, ray.kz), cz = relative(2, ray.kz);
+      const auto ax = hn::Sub(relative(0, ray.kx), hn::Mul(shear_x, az));
+      const auto bx = hn::Sub(relative(1, ray.kx), hn::Mul(shear_x, bz));
+      const auto cx = hn::Sub(relative(2, ray.kx), hn::Mul(shear_x, cz));
+      const auto ay = hn::Sub(relative(0, ray.ky), hn::Mul(shear_y, az));
+      const auto by = hn::Sub(relative(1, ray.ky), hn::Mul(shear_y, bz));
+      const auto cy = hn::Sub(relative(2, ray.ky), hn::Mul(shear_y, cz));
       const auto u = hn::Sub(hn::Mul(cx, by), hn::Mul(cy, bx));
       const auto v = hn::Sub(hn::Mul(ax, cy), hn::Mul(ay, cx));
       const auto w = hn::Sub(hn::Mul(bx, ay), hn::Mul(by, ax));
-      robust_lanes<TriangleLeaf, kAny>(d, u, v, w, az, bz, cz, block, lane, ray, best);
-      if (kAny && best.block) return;
+      robust_lanes<TriangleLeaf, kAny>(d, u, v, w, az, bz, cz, at, ray, best);
+    } else {
+      const auto row = [&](int k, int axis) HWY_ATTR { return load(d, at, k, axis); };
+      const auto x = row(0, 0), y = row(0, 1), z = row(0, 2);
+      fast_lanes<TriangleLeaf, kAny>(d, x, y, z, hn::Sub(row(1, 0), x), hn::Sub(row(1, 1), y), hn::Sub(row(1, 2), z),
+                                     hn::Sub(row(2, 0), x), hn::Sub(row(2, 1), y), hn::Sub(row(2, 2), z), at, ray,
+                                     best);
     }
   }
 
-  template <class D>
-  static HWY_INLINE auto edge(D d, const Block& block, int k, int axis, int lane) {
-    return hn::Sub(hn::Load(d, block.corner[k][axis] + lane), hn::Load(d, block.corner[0][axis] + lane));
-  }
-
-  template <bool kAny>
-  static HWY_INLINE void fast(const Block& block, const RaySetup& ray, Best<TriangleLeaf>& best) {
+  template <bool kRobust, bool kAny>
+  static HWY_INLINE void one(const Block& block, const RaySetup& ray, Best<TriangleLeaf>& best) {
     const hn::CappedTag<float, 4> d;
     const int step = static_cast<int>(hn::Lanes(d));
     for (int lane = 0; lane < 4; lane += step) {
-      const auto e1x = edge(d, block, 1, 0, lane), e1y = edge(d, block, 1, 1, lane), e1z = edge(d, block, 1, 2, lane);
-      const auto e2x = edge(d, block, 2, 0, lane), e2y = edge(d, block, 2, 1, lane), e2z = edge(d, block, 2, 2, lane);
-      fast_lanes<TriangleLeaf, kAny>(d, hn::Load(d, block.corner[0][0] + lane), hn::Load(d, block.corner[0][1] + lane),
-                                     hn::Load(d, block.corner[0][2] + lane), e1x, e1y, e1z, e2x, e2y, e2z, block, lane,
-                                     ray, best);
+      test<kRobust, kAny>(d, BlockLanes<Block>{&block, lane}, ray, best);
+      if (kAny && best.block) return;
     }
+  }
+  template <bool kRobust, bool kAny>
+  static HWY_INLINE void two(const Block& low, const Block& high, const RaySetup& ray, Best<TriangleLeaf>& best) {
+    test<kRobust, kAny>(hn::CappedTag<float, 8>(), PairLanes<Block>{&low, &high}, ray, best);
   }
 };
 

@@ -18,7 +18,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 #include <memory>
 
 #include "boxwood/queries.h"
@@ -81,8 +80,9 @@ class BoxTest {
   std::uint32_t entry_row_[3], exit_row_[3];  // floats from the first plane
 };
 
-/// A waiting child: entry distance in the high half, child word in the low half. Distances are not negative, so their
-/// bits order like the numbers, and one integer comparison orders entries (equal distances by word).
+/// A waiting child of a closest-hit query: entry distance in the high half, child word in the low half. Distances are
+/// not negative, so their bits order like the numbers, and one integer comparison orders entries (equal distances by
+/// word).
 using StackEntry = std::uint64_t;
 HWY_INLINE StackEntry make_entry(float near, std::uint32_t word) {
   return std::uint64_t{std::bit_cast<std::uint32_t>(near)} << 32 | word;
@@ -132,42 +132,23 @@ HWY_INLINE std::uint32_t push_children(const WideNode<W>& node, std::uint32_t hi
   return static_cast<std::uint32_t>(*--top);
 }
 
-/// The same for any-hit queries, whose stack holds child words and grows downwards. Children stand in the order in
-/// which they are worth trying (see layouts/wide.cpp): the first is returned, the second will be popped first. No hit
-/// ends the ray but the last, so distances are of no use.
-template <int W>
-HWY_INLINE std::uint32_t push_in_order(const WideNode<W>& node, std::uint32_t hit, std::uint32_t*& top) {
-  const std::uint32_t next = node.child[std::countr_zero(hit)];
-  hit &= hit - 1;
-#if HWY_TARGET <= HWY_AVX3
-  if constexpr (W == 16) {
-    const hn::ScalableTag<std::uint32_t> du;
-    const auto bits = static_cast<std::uint16_t>(hit);
-    alignas(8) std::uint8_t bytes[8] = {};
-    std::memcpy(bytes, &bits, sizeof bits);
-    const auto count = static_cast<std::size_t>(std::popcount(hit));
-    top -= count;
-    hn::BlendedStore(hn::Compress(hn::Load(du, node.child), hn::LoadMaskBits(du, bytes)), hn::FirstN(du, count), du,
-                     top);
-    return next;
-  }
-#endif
-  while (hit) {
-    const int i = 31 - std::countl_zero(hit);
-    hit ^= 1u << i;
-    *--top = node.child[i];
-  }
-  return next;
-}
-
+/// Tests the blocks of a leaf, two at a time where vectors hold two: how many there are is a bad guess, and but for
+/// leaves of one block pairs ask half as often. An odd block at the end is tested beside itself.
 template <class Leaf, bool kRobust, bool kAny>
 HWY_INLINE void test_leaf(const typename Leaf::Block* block, const typename Leaf::Block* end, const RaySetup& ray,
                           Best<Leaf>& best) {
+#if HWY_MAX_BYTES >= 32
+  if constexpr (Leaf::kPairs) {
+    if (block + 1 == end) return Leaf::template one<kRobust, kAny>(*block, ray, best);
+    do {
+      Leaf::template two<kRobust, kAny>(*block, *std::min(block + 1, end - 1), ray, best);
+      if (kAny && best.block) return;
+    } while ((block += 2) < end);
+    return;
+  }
+#endif
   do {
-    if constexpr (kRobust)
-      Leaf::template robust<kAny>(*block, ray, best);
-    else
-      Leaf::template fast<kAny>(*block, ray, best);
+    Leaf::template one<kRobust, kAny>(*block, ray, best);
     if (kAny && best.block) return;
   } while (++block != end);
 }
@@ -212,49 +193,57 @@ HWY_INLINE bool traverse_closest(const Layout& layout, const RaySetup& ray, Stac
   }
 }
 
+/// Children stand in the order in which they are worth trying (see layouts/wide.cpp), and no hit ends the ray but the
+/// last, so distances are of no use: a node's hits stay the bits they are, and what waits on the stack is a node with
+/// the children of it that are left.
 template <int W, class Leaf, bool kRobust, bool kCount>
-HWY_INLINE bool traverse_any(const Layout& layout, const RaySetup& ray, std::uint32_t* top, Best<Leaf>& best,
+HWY_INLINE bool traverse_any(const Layout& layout, const RaySetup& ray, StackEntry* const stack, Best<Leaf>& best,
                              Counts* counts) {
   using Block = typename Leaf::Block;
   const auto* const nodes = reinterpret_cast<const WideNode<W>*>(layout.nodes.data());
   const auto* const blocks = reinterpret_cast<const Block*>(layout.triangles.data());
   const BoxTest<W> test(ray);
-  std::uint32_t word = layout.root;
+  StackEntry* top = stack;
+  std::uint32_t word = layout.root, node = 0, left = 0;  // `left`: children of `node` still to be tried
   alignas(64) float entry[W];
-  *--top = layouts::kNoRoot;
-  for (; word != layouts::kNoRoot; word = *top++) {
-    std::uint32_t hit = 1;
-    while (!(word & layouts::kLeafBit)) {
-      const WideNode<W>& node = nodes[word];
+  for (;;) {
+    if (word & layouts::kLeafBit) {
+      const Block* const block = blocks + layouts::leaf_first(word);
+      const Block* const end = block + layouts::leaf_blocks(word);
+      if constexpr (kCount) count_leaf(block, end, *counts);
+      test_leaf<Leaf, kRobust, true>(block, end, ray, best);
+      if (best.block) return true;
+    } else {
       if constexpr (kCount) ++counts->nodes;
-      hit = test(node, best.t, entry);
-      if (!hit) break;
-      word = push_in_order<W>(node, hit, top);
+      if (const std::uint32_t hit = test(nodes[word], best.t, entry)) {
+        *top = StackEntry{node} << 32 | left;
+        top += left != 0;
+        node = word;
+        left = hit;
+      }
     }
-    if (!hit) continue;
-    const Block* const block = blocks + layouts::leaf_first(word);
-    const Block* const end = block + layouts::leaf_blocks(word);
-    if constexpr (kCount) count_leaf(block, end, *counts);
-    test_leaf<Leaf, kRobust, true>(block, end, ray, best);
-    if (best.block) return true;
+    if (!left) {
+      if (top == stack) return false;
+      --top;
+      node = static_cast<std::uint32_t>(*top >> 32);
+      left = static_cast<std::uint32_t>(*top);
+    }
+    word = nodes[node].child[std::countr_zero(left)];
+    left &= left - 1;
   }
-  return false;
 }
 
 /// The stack of one call: on the machine's stack unless the tree is unusually deep.
 class Stack {
  public:
-  explicit Stack(std::size_t needed) : size_(std::max(needed, kInlineStack)) {
+  explicit Stack(std::size_t needed) {
     if (needed > kInlineStack) heap_ = std::make_unique_for_overwrite<StackEntry[]>(needed);
   }
   StackEntry* entries() { return heap_ ? heap_.get() : inline_; }
-  /// The same memory for twice as many words, from its end on downwards.
-  std::uint32_t* words_end() { return reinterpret_cast<std::uint32_t*>(entries() + size_); }
 
  private:
   StackEntry inline_[kInlineStack];
   std::unique_ptr<StackEntry[]> heap_;
-  std::size_t size_;
 };
 
 /// Runs one ray with a stack that is large enough and reports through `done(best, setup)`.
@@ -266,7 +255,7 @@ HWY_INLINE bool trace(const Layout& layout, const Ray& ray, RaySetup& setup, Bes
   best.t = setup.tmax;
   bool hit;
   if constexpr (kAny)
-    hit = traverse_any<W, Leaf, kRobust, kCount>(layout, setup, stack.words_end(), best, counts);
+    hit = traverse_any<W, Leaf, kRobust, kCount>(layout, setup, stack.entries(), best, counts);
   else
     hit = traverse_closest<W, Leaf, kRobust, kCount>(layout, setup, stack.entries(), best, counts);
   if constexpr (kCount) counts->hits = hit;

@@ -22,6 +22,7 @@ namespace boxwood::queries::HWY_NAMESPACE {
 /// Lanes 0 to 3 are the first triangles of a block's quads, lanes 4 to 7 the second ones.
 struct QuadLeaf {
   using Block = layouts::QuadBlock;
+  static constexpr bool kPairs = false;
 
   static HWY_INLINE std::uint32_t primitive(const Block& block, int lane) {
     return block.primitive[lane] & layouts::kQuadIdMask;
@@ -34,9 +35,18 @@ struct QuadLeaf {
   /// A lone triangle's second half is NaN in its own corner only, and what a minimum of a number and NaN is differs
   /// between instruction sets.
   template <class D>
-  static HWY_INLINE std::uint64_t used(D, const Block& block, int first_lane) {
+  static HWY_INLINE std::uint64_t used(D, const BlockLanes<Block>& at) {
     const hn::RebindToUnsigned<D> du;
-    return mask_bits(du, hn::Ne(hn::Load(du, block.primitive + first_lane), hn::Set(du, layouts::kInvalidPrimitive)));
+    return mask_bits(du,
+                     hn::Ne(hn::Load(du, at.own->primitive + at.first_lane), hn::Set(du, layouts::kInvalidPrimitive)));
+  }
+
+  template <bool kRobust, bool kAny>
+  static HWY_INLINE void one(const Block& block, const RaySetup& ray, Best<QuadLeaf>& best) {
+    if constexpr (kRobust)
+      robust<kAny>(block, ray, best);
+    else
+      fast<kAny>(block, ray, best);
   }
 
   template <bool kAny>
@@ -60,7 +70,7 @@ struct QuadLeaf {
         const auto ay = hn::Sub(hn::Sub(hn::Load(d, block.apex[ray.ky] + lane), oy), hn::Mul(shear_y, az));
         const auto v = hn::Sub(hn::Mul(ax, cy), hn::Mul(ay, cx));
         const auto w = hn::Sub(hn::Mul(bx, ay), hn::Mul(by, ax));
-        robust_lanes<QuadLeaf, kAny>(d, u, v, w, az, bz, cz, block, lane, ray, best);
+        robust_lanes<QuadLeaf, kAny>(d, u, v, w, az, bz, cz, BlockLanes<Block>{&block, lane}, ray, best);
         if (kAny && best.block) return;
       }
     }
@@ -90,7 +100,8 @@ struct QuadLeaf {
       corners(0, v0x, e1x, e2x);
       corners(1, v0y, e1y, e2y);
       corners(2, v0z, e1z, e2z);
-      fast_lanes<QuadLeaf, kAny>(d, v0x, v0y, v0z, e1x, e1y, e1z, e2x, e2y, e2z, block, lane, ray, best);
+      fast_lanes<QuadLeaf, kAny>(d, v0x, v0y, v0z, e1x, e1y, e1z, e2x, e2y, e2z, BlockLanes<Block>{&block, lane}, ray,
+                                 best);
     }
   }
 };
