@@ -22,7 +22,7 @@ namespace boxwood::queries::HWY_NAMESPACE {
 /// Lanes 0 to 3 are the first triangles of a block's quads, lanes 4 to 7 the second ones.
 struct QuadLeaf {
   using Block = layouts::QuadBlock;
-  static constexpr bool kPairs = false;
+  static constexpr bool kPairs = false;  // eight lanes are full with one
 
   static HWY_INLINE std::uint32_t primitive(const Block& block, int lane) {
     return block.primitive[lane] & layouts::kQuadIdMask;
