@@ -25,6 +25,9 @@ constexpr std::size_t kIncoherentRun = 8, kUnseen = 3;
 /// Tiles passed over, at most, until a packet is tried again where packets have given up.
 constexpr std::size_t kMostSkipped = 32;
 
+/// Where there are fewer rays, looking for rows costs more than tiles gain.
+constexpr std::size_t kLeastTiled = 2048;
+
 bool is_sound(const Ray& ray) {
   const Vec3 d = ray.direction;
   const float largest = maximum(maximum(std::fabs(d.x), std::fabs(d.y)), std::fabs(d.z));
@@ -57,17 +60,20 @@ float size_of(const Box& bounds) {
   return size > 0 ? size : 1;
 }
 
-/// Half a radian across is the most that a packet is tried with. Looks at four rays of the tile.
+/// Half a radian across is the most that a packet is tried with. Looks at six rays of the tile.
 bool looks_coherent(const Ray* rays, const Tile& tile, float size) {
   constexpr float kMost = 0.5f;
   const Ray* first = nullptr;
+  Vec3 direction;
   for (const std::uint32_t row : {0u, tile.rows - 1})
     for (const std::uint32_t column : {0u, tile.columns / 2, tile.columns - 1}) {
       const Ray& ray = rays[tile.first + row * tile.stride + column];
       if (!is_sound(ray)) continue;
+      const Vec3 scaled = scaled_direction(ray);
       if (!first)
-        first = &ray;
-      else if (!(difference(*first, ray, size) < kMost))
+        first = &ray, direction = scaled;
+      else if (!(largest_component(scaled - direction) * size + largest_component(ray.origin - first->origin) <
+                 kMost * size))
         return false;
     }
   return first != nullptr;
@@ -75,7 +81,7 @@ bool looks_coherent(const Ray* rays, const Tile& tile, float size) {
 
 /// The mean difference between rays `distance` apart, capped so that a few edges in the picture don't count.
 float mean_difference(std::span<const Ray> rays, std::size_t distance, float size) {
-  constexpr std::size_t kSamples = 24;
+  constexpr std::size_t kSamples = 12;
   constexpr float kCap = 0.25f;
   const std::size_t range = rays.size() - distance;
   float sum = 0;
@@ -93,20 +99,27 @@ float mean_difference(std::span<const Ray> rays, std::size_t distance, float siz
 /// The rays of a picture come row by row: then the ray below a ray is as near to it as its neighbour. Finds the
 /// distance at which rays differ least, if tiles of such rows are narrower than rows of 64. 0 if there is none.
 std::size_t find_row(std::span<const Ray> rays, float size) {
-  constexpr std::size_t kLeast = 32, kMost = 4096, kStep = 8;
-  if (rays.size() < 8192) return 0;
+  constexpr std::size_t kLeast = 32, kMost = 4096, kStep = 8, kManyRays = 1 << 18;
+  if (rays.size() < kLeastTiled) return 0;
   const std::size_t most = std::min(kMost, rays.size() / 8);
+  const float enough = mean_difference(rays, 16, size) / 2;
   std::size_t best = 0;
   float least = kInfinity;
   const auto consider = [&](std::size_t row) {
     const float mean = mean_difference(rays, row, size);
     if (mean < least) least = mean, best = row;
   };
+  // A whole picture's width divides the number of its rays.
+  for (std::size_t row = kLeast; row <= most; ++row)
+    if (rays.size() % row == 0) consider(row);
+  if (least < enough) return best;
+  // Part of a picture, or one that has no such width: worth the look only if there is much to be gained.
+  if (rays.size() < kManyRays) return 0;
   for (std::size_t row = kLeast; row <= most; row += kStep) consider(row);
   if (best == 0) return 0;
   const std::size_t coarse = best;
   for (std::size_t row = std::max(kLeast, coarse - kStep + 1); row < coarse + kStep; ++row) consider(row);
-  return 2 * least < mean_difference(rays, 16, size) ? best : 0;
+  return least < enough ? best : 0;
 }
 
 void trace_single(const BatchMethods& methods, const layouts::Layout& layout, const Ray* rays, std::size_t count,
@@ -160,7 +173,8 @@ class ChunkTracer {
   /// Where packets give up they are tried ever more rarely, until one gets through; and tiles behind a run of
   /// incoherent ones are not all looked at.
   Outcome packet(const Tile& tile, bool always) {
-    if (!always) {
+    // Behind a tile that was a packet there is one mostly, and it finds out itself if it is none.
+    if (!always && !was_packet_) {
       if (unseen_ > 0) return --unseen_, Outcome::incoherent;
       if (!looks_coherent(rays_.data(), tile, size_)) {
         if (++incoherent_ >= kIncoherentRun) unseen_ = kUnseen;
@@ -172,6 +186,7 @@ class ChunkTracer {
     const BatchAnswers& a = answers_;
     const bool done = a.any() ? methods_.batch.packet_any(layout_, rays_.data(), tile, a.occluded)
                               : methods_.batch.packet_closest(layout_, rays_.data(), tile, a.hits, a.normals);
+    was_packet_ = done;
     skipping_ = done ? 0 : std::min(kMostSkipped, 2 * skipping_ + 1);
     to_skip_ = skipping_;
     return done ? Outcome::done : Outcome::coherent;
@@ -266,6 +281,7 @@ class ChunkTracer {
   std::span<const Ray> rays_;
   const BatchAnswers& answers_;
   float size_;
+  bool was_packet_ = false;
   std::size_t skipping_ = 0, to_skip_ = 0, incoherent_ = 0, unseen_ = 0;
   std::size_t rest_count_ = 0;
   Ray rest_[kCopiedPiece];
@@ -332,7 +348,7 @@ BatchCut cut_batch(const BatchMethods& methods, std::span<const Ray> rays, Trave
   // Only where neighbours are coherent are rows worth looking for.
   std::size_t coherent = 0;
   constexpr std::size_t kSamples = 16;
-  for (std::size_t k = 0; k < kSamples && rays.size() >= 8192; ++k) {
+  for (std::size_t k = 0; k < kSamples && rays.size() >= kLeastTiled; ++k) {
     const std::size_t first = spread(k, rays.size() - 8);
     coherent += looks_coherent(rays.data(), {first, 0, 8, 1}, size);
   }

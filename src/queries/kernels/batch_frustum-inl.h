@@ -72,10 +72,6 @@ class Frustum {
   /// How far behind the beam's beginning its end is now; children that are entered behind it are left out.
   HWY_INLINE float length() const { return z1_ - z0_; }
 
-  /// The area of the beam across its main axis where it is widest, and of the scene's box.
-  HWY_INLINE float area_at_end() const { return width(0, z1_) * width(1, z1_); }
-  HWY_INLINE float area_at_start() const { return width(0, z0_) * width(1, z0_); }
-
   /// Which boxes of the node the beam meets, one bit each, and how far behind its beginning it enters them.
   template <int W>
   HWY_INLINE std::uint32_t test(const WideNode<W>& node, float* entry) const {
@@ -110,10 +106,6 @@ class Frustum {
   static HWY_INLINE V at(D d, const Line& line, V z) {
     return hn::MulAdd(hn::Set(d, line.slope), z, hn::Set(d, line.offset));
   }
-  HWY_INLINE float width(int k, float z) const {
-    return (high_[k].offset - low_[k].offset) + (high_[k].slope - low_[k].slope) * z;
-  }
-
   HWY_INLINE void bound(const PacketRays& rays, int axis, const float* shear, float pad, Line& low, Line& high) const {
     const RayTag d;
     const auto up = hn::Set(d, kInfinity), down = hn::Set(d, -kInfinity);

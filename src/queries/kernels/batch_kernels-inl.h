@@ -7,7 +7,7 @@
 #endif
 
 #include "queries/kernels/batch_interleaved-inl.h"
-#include "queries/kernels/batch_packet-inl.h"
+#include "queries/kernels/batch_tile-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace boxwood::queries::HWY_NAMESPACE {

@@ -1,14 +1,17 @@
 // Coherent packets of up to 64 rays through wide nodes. Inner nodes are tested once for the whole packet, against the
 // beam that encloses its rays (batch_frustum-inl.h); leaves by a vector of rays at a time: first the leaf's box, by the
-// arithmetic of a single ray, then its triangles one by one. So each ray finds what it finds alone: it is tested
-// against the triangles of every leaf whose box it meets, by the same operations, and of several hits at one t the
-// lowest id is taken whatever the order.
+// arithmetic of a single ray, then its triangles one by one. Where few rays meet the same leaves the packet ends, and
+// each ray goes on alone with the subtrees that wait (the hybrid of Benthin et al. 2012, bib key benthin2012). So each
+// ray finds what it finds alone: it is tested against the triangles of every leaf whose box it meets, by the same
+// operations, and of several hits at one t the lowest id is taken whatever the order.
 #if defined(BOXWOOD_QUERIES_KERNELS_BATCH_PACKET_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BOXWOOD_QUERIES_KERNELS_BATCH_PACKET_INL_H_
 #undef BOXWOOD_QUERIES_KERNELS_BATCH_PACKET_INL_H_
 #else
 #define BOXWOOD_QUERIES_KERNELS_BATCH_PACKET_INL_H_
 #endif
+
+#include <cstring>
 
 #include "queries/kernels/batch_frustum-inl.h"
 
@@ -23,45 +26,38 @@ class PacketTraversal {
   using Mask = hn::Mask<RayTag>;
   static constexpr int kLanes = sizeof(Block::primitive) / sizeof(std::uint32_t);
 
-  PacketTraversal(const Layout& layout, PacketRays& rays)
+  /// `as_given`: the rays as the caller has them, to whose places those of `rays` refer.
+  PacketTraversal(const Layout& layout, const Ray* as_given, PacketRays& rays)
       : layout_(layout),
         nodes_(reinterpret_cast<const WideNode<W>*>(layout.nodes.data())),
         blocks_(reinterpret_cast<const Block*>(layout.triangles.data())),
+        as_given_(as_given),
         rays_(rays) {}
 
-  /// Traces the rays whose limit is not below zero; they share this signature. False when they spread too far, or too
-  /// many leaves turn out to lie in their beam: single rays would visit fewer.
-  HWY_INLINE bool run(int signature, StackEntry* const stack) {
+  /// Traces the rays whose limit is not below zero; they share this signature.
+  HWY_INLINE void run(int signature, StackEntry* const stack) {
     static constexpr int kNext[] = {1, 2, 0};
     kz_ = signature >> 1, kx_ = kNext[kz_], ky_ = kNext[kx_];
-    rays_.prepare_triangles(kx_, ky_, kz_);
-    if (!frustum_.enclose(rays_, layout_.bounds, kx_, ky_, kz_, signature & 1)) return true;
-    if (spreads()) return false;
+    rays_.prepare_triangles<kRobust>(kx_, ky_, kz_);
+    if (!frustum_.enclose(rays_, layout_.bounds, kx_, ky_, kz_, signature & 1)) return;
     if (layout_.root & layouts::kLeafBit) {
       float planes[6];
       for (int axis = 0; axis < 3; ++axis)
         planes[2 * axis] = layout_.bounds.lower[axis], planes[2 * axis + 1] = layout_.bounds.upper[axis];
       visit_leaf(layout_.root, planes, 1);
-      return true;
+      return;
     }
-    return traverse(stack);
+    traverse(stack);
   }
 
  private:
-  /// A beam as wide as a good part of the scene takes in more leaves than its rays need.
-  HWY_INLINE bool spreads() const {
-    const Vec3 size = layout_.bounds.upper - layout_.bounds.lower;
-    const float scene = size[kx_] * size[ky_];
-    const float widest = maximum(frustum_.area_at_start(), frustum_.area_at_end());
-    return widest * static_cast<float>(layout_.leaf_count) > kSpread * scene + 1e-30f && layout_.leaf_count > 64;
-  }
-  static constexpr float kSpread = 16384;
-  /// A leaf costs as many tests as the packet has vectors; with more leaves than this, single rays are as fast.
-  static constexpr int kMostLeaves = 6 * static_cast<int>(hn::MaxLanes(RayTag()));
+  /// A leaf costs as much as some rays that visit it alone. What the packet has saved or lost at leaves is summed up,
+  /// and it ends when there is nothing left of what it starts with.
+  static constexpr int kCredit = 16, kLeafPrice = 4;
 
-  HWY_INLINE bool traverse(StackEntry* const stack) {
+  HWY_INLINE void traverse(StackEntry* const stack) {
     StackEntry* top = stack;
-    int leaves_left = kMostLeaves;
+    int credit = kCredit;
     std::uint32_t node_index = layout_.root;
     alignas(64) float entry[W];
     for (;;) {
@@ -69,7 +65,7 @@ class PacketTraversal {
       const std::uint32_t hit = frustum_.template test<W>(node, entry);
       push(node, node_index, hit, entry, top);
       for (;;) {
-        if (top == stack) return true;
+        if (top == stack) return;
         --top;
         if (entry_distance(*top) > frustum_.length()) continue;
         const auto place = static_cast<std::uint32_t>(*top);
@@ -79,8 +75,9 @@ class PacketTraversal {
           node_index = word;
           break;
         }
-        if (leaves_left-- == 0) return false;
-        if (visit_leaf(word, &parent.planes[0][0] + place % W, W)) return true;
+        if (visit_leaf(word, &parent.planes[0][0] + place % W, W)) return;
+        credit += met_ - kLeafPrice;
+        if (credit < 0) return hand_over(stack, top);
       }
     }
   }
@@ -112,9 +109,13 @@ class PacketTraversal {
     const Block* const begin = blocks_ + layouts::leaf_first(word);
     const Block* const end = begin + layouts::leaf_blocks(word);
     bool shorter = false;
+    met_ = 0;
+    auto near = hn::Zero(d);
     for (int i = 0; i < PacketRays::kRays; i += static_cast<int>(hn::Lanes(d))) {
-      const auto active = meets(i, planes, stride);
-      if (hn::AllFalse(d, active)) continue;
+      const auto active = meets(i, planes, stride, near);
+      const std::size_t count = hn::CountTrue(d, active);
+      if (count == 0) continue;
+      met_ += static_cast<int>(count);
       for (const Block* block = begin; block != end; ++block) {
         if constexpr (kRobust)
           shorter |= robust(*block, i, active);
@@ -127,10 +128,71 @@ class PacketTraversal {
     return kAny && frustum_.length() < 0;
   }
 
-  /// The box test of single rays; which of two planes is entered first follows from the products.
-  HWY_INLINE Mask meets(int i, const float* planes, int stride) const {
+  /// Ends the packet: each ray goes on alone, through those of the waiting subtrees whose box it meets.
+  HWY_NOINLINE void hand_over(const StackEntry* const stack, const StackEntry* top) {
+    constexpr std::ptrdiff_t kAtOnce = 32, kFew = 4;  // mostly a ray waits for few
     const RayTag d;
-    auto near = hn::Load(d, rays_.tmin + i), far = hn::Load(d, rays_.limit + i);
+    alignas(64) StackEntry waiting[PacketRays::kRays][kAtOnce];
+    alignas(64) float distances[hn::MaxLanes(RayTag())];
+    Stack own(layout_.max_stack + W);
+    StackEntry* const base = own.entries();
+    while (top != stack) {
+      const StackEntry* const end = top;
+      top -= std::min(kAtOnce, top - stack);
+      std::uint8_t counts[PacketRays::kRays] = {};
+      std::uint64_t some = 0;  // rays with a subtree to go through
+      for (const StackEntry* from = top; from != end; ++from) {
+        const auto place = static_cast<std::uint32_t>(*from), node = place / W, child = place % W;
+        for (int i = 0; i < PacketRays::kRays; i += static_cast<int>(hn::Lanes(d))) {
+          auto near = hn::Zero(d);
+          std::uint64_t met = packet_bits(d, meets(i, &nodes_[node].planes[0][0] + child, W, near));
+          some |= met << i;
+          hn::Store(near, d, distances);
+          for (; met; met &= met - 1) {
+            const int lane = std::countr_zero(met), slot = i + lane;
+            waiting[slot][counts[slot]++] =
+                kAny ? StackEntry{node} << 32 | 1u << child : make_entry(distances[lane], nodes_[node].child[child]);
+          }
+        }
+      }
+      for (; some; some &= some - 1) {
+        const int slot = std::countr_zero(some);
+        std::memcpy(base, waiting[slot], kFew * sizeof(StackEntry));
+        if (counts[slot] > kFew) std::memcpy(base, waiting[slot], kAtOnce * sizeof(StackEntry));
+        go_on_alone(slot, base, base + counts[slot]);
+      }
+    }
+  }
+
+  HWY_INLINE void go_on_alone(int slot, StackEntry* const base, StackEntry* top) {
+    RaySetup setup;
+    if (!set_up_ray<kRobust>(as_given_[rays_.place[slot]], layout_.bounds, setup)) return;
+    Best<Leaf> best;
+    best.t = rays_.limit[slot], best.primitive = rays_.primitive[slot];
+    --top;
+    if constexpr (kAny) {
+      const std::uint32_t word = nodes_[*top >> 32].child[std::countr_zero(static_cast<std::uint32_t>(*top))];
+      if (!traverse_any<W, Leaf, kRobust, false>(layout_, setup, base, top, word, best, nullptr)) return;
+      rays_.limit[slot] = -kInfinity, rays_.primitive[slot] = 0;
+    } else {
+      if (!traverse_closest<W, Leaf, kRobust, false>(layout_, setup, base, top, static_cast<std::uint32_t>(*top), best,
+                                                     nullptr))
+        return;
+      rays_.limit[slot] = best.t, rays_.primitive[slot] = best.primitive;
+      rays_.triangle[slot] =
+          static_cast<std::uint32_t>(best.block - blocks_) * 8 + static_cast<std::uint32_t>(best.lane);
+      if constexpr (kRobust)
+        rays_.u[slot] = best.u, rays_.v[slot] = best.v, rays_.sum[slot] = best.sum;
+      else
+        rays_.float_u[slot] = static_cast<float>(best.u), rays_.float_v[slot] = static_cast<float>(best.v);
+    }
+  }
+
+  /// The box test of single rays; which of two planes is entered first follows from the products.
+  HWY_INLINE Mask meets(int i, const float* planes, int stride, V& near) const {
+    const RayTag d;
+    near = hn::Load(d, rays_.tmin + i);
+    auto far = hn::Load(d, rays_.limit + i);
     for (int axis = 0; axis < 3; ++axis) {
       const auto lower = hn::Set(d, planes[2 * axis * stride]), upper = hn::Set(d, planes[(2 * axis + 1) * stride]);
       const auto r = hn::Load(d, rays_.reciprocal[axis] + i);
@@ -344,13 +406,8 @@ class PacketTraversal {
     hn::BlendedStore(id, hn::RebindMask(du, ok), du, rays_.primitive + i);
     if constexpr (!kAny) {
       hn::BlendedStore(hn::Set(du, triangle_number(block, lane)), hn::RebindMask(du, ok), du, rays_.triangle + i);
-      alignas(64) float us[16], vs[16];
-      hn::Store(u, d, us);
-      hn::Store(v, d, vs);
-      for (std::uint32_t bits = packet_bits(d, ok); bits; bits &= bits - 1) {
-        const int k = std::countr_zero(bits);
-        rays_.u[i + k] = us[k], rays_.v[i + k] = vs[k], rays_.sum[i + k] = 1;
-      }
+      hn::BlendedStore(u, ok, d, rays_.float_u + i);
+      hn::BlendedStore(v, ok, d, rays_.float_v + i);
     }
     return true;
   }
@@ -358,78 +415,12 @@ class PacketTraversal {
   const Layout& layout_;
   const WideNode<W>* nodes_;
   const Block* blocks_;
+  const Ray* as_given_;
   PacketRays& rays_;
   Frustum frustum_;
+  int met_ = 0;  ///< rays that met the last leaf's box
   int kx_ = 0, ky_ = 0, kz_ = 0;
 };
-
-/// Where a packet's answers go.
-struct PacketAnswers {
-  Hit* hits = nullptr;
-  Vec3* normals = nullptr;
-  std::uint8_t* occluded = nullptr;
-};
-
-template <class Leaf, bool kAny>
-HWY_INLINE void answer(const Layout& layout, const PacketRays& rays, float signature, const PacketAnswers& answers) {
-  const auto* blocks = reinterpret_cast<const typename Leaf::Block*>(layout.triangles.data());
-  for (int slot = 0; slot < PacketRays::kRays; ++slot) {
-    const std::uint32_t place = rays.place[slot];
-    if (place == PacketRays::kNowhere || rays.signature[slot] != signature) continue;
-    const bool hit = rays.primitive[slot] != layouts::kInvalidPrimitive;
-    if constexpr (kAny) {
-      answers.occluded[place] = hit;
-      continue;
-    }
-    answers.hits[place] =
-        !hit ? Hit{}
-             : Hit{rays.limit[slot] * rays.t_scale[slot], static_cast<float>(rays.u[slot] / rays.sum[slot]),
-                   static_cast<float>(rays.v[slot] / rays.sum[slot]), rays.primitive[slot]};
-    if (!answers.normals) continue;
-    answers.normals[place] = {};
-    if (hit)
-      answers.normals[place] =
-          triangle_of<Leaf>(blocks[rays.triangle[slot] / 8], static_cast<int>(rays.triangle[slot] % 8)).normal();
-  }
-}
-
-/// One packet, in a pass for each main axis and sense of running along it; more than `kPasses` of them are too many.
-template <int W, class Leaf, bool kRobust, bool kAny>
-bool trace_packet(const Layout& layout, const Ray* rays, const Tile& tile, PacketAnswers answers) {
-  constexpr int kPasses = 2;
-  // Without vectors a packet gains nothing.
-  if constexpr (hn::MaxLanes(RayTag()) < 4) return false;
-  PacketRays packet;
-  packet.load(rays, tile);
-  packet.prepare();
-  const RayTag d;
-  const hn::RebindToUnsigned<RayTag> du;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  std::uint32_t present = 0;
-  for (int slot = 0; slot < PacketRays::kRays; ++slot) present |= 1u << (static_cast<int>(packet.signature[slot]) + 1);
-  const std::uint32_t signatures = present >> 1;
-  if (std::popcount(signatures) > kPasses) return false;
-  packet.prepare_boxes(layout.bounds);
-  for (int i = 0; i < PacketRays::kRays; i += lanes)
-    hn::Store(hn::Set(du, layouts::kInvalidPrimitive), du, packet.primitive + i);
-  if (answers.hits) answers.hits += tile.first;
-  if (answers.normals) answers.normals += tile.first;
-  if (answers.occluded) answers.occluded += tile.first;
-  Stack stack(layout.max_stack + W);
-  PacketTraversal<W, Leaf, kRobust, kAny> traversal(layout, packet);
-  if (present & 1) answer<Leaf, kAny>(layout, packet, -1, answers);
-  for (std::uint32_t left = signatures; left; left &= left - 1) {
-    const int signature = std::countr_zero(left);
-    const auto mine = hn::Set(d, static_cast<float>(signature));
-    for (int i = 0; i < PacketRays::kRays; i += lanes) {
-      const auto active = hn::Eq(hn::Load(d, packet.signature + i), mine);
-      hn::Store(hn::IfThenElse(active, hn::Load(d, packet.tmax + i), hn::Set(d, -kInfinity)), d, packet.limit + i);
-    }
-    if (layout.root != layouts::kNoRoot && !traversal.run(signature, stack.entries())) return false;
-    answer<Leaf, kAny>(layout, packet, static_cast<float>(signature), answers);
-  }
-  return true;
-}
 
 }  // namespace boxwood::queries::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -21,8 +21,23 @@ HWY_INLINE std::uint32_t packet_bits(D d, hn::Mask<D> mask) {
   return static_cast<std::uint32_t>(mask_bits(d, mask));
 }
 
+#if HWY_TARGET != HWY_SCALAR
+using FourTag = hn::FixedTag<float, 4>;
+
+/// Rows become columns.
+template <class V>
+HWY_INLINE void transpose_four(V& a, V& b, V& c, V& e) {
+  const FourTag d;
+  const auto ab_lower = hn::InterleaveLower(d, a, b), ab_upper = hn::InterleaveUpper(d, a, b);
+  const auto ce_lower = hn::InterleaveLower(d, c, e), ce_upper = hn::InterleaveUpper(d, c, e);
+  a = hn::ConcatLowerLower(d, ce_lower, ab_lower), b = hn::ConcatUpperUpper(d, ce_lower, ab_lower);
+  c = hn::ConcatLowerLower(d, ce_upper, ab_upper), e = hn::ConcatUpperUpper(d, ce_upper, ab_upper);
+}
+#endif
+
 /// `limit`: the nearest hit's t so far, or tmax; minus infinity for rays that take no part, which no test passes.
-/// u and v are kept times `sum`. `triangle`: eight times the hit's block, plus its lane.
+/// u and v are kept times `sum` in robust mode, as `float_u` and `float_v` in fast mode. `triangle`: eight times the
+/// hit's block, plus its lane.
 struct alignas(64) PacketRays {
   static constexpr int kRays = static_cast<int>(kPacketRays);
 
@@ -31,36 +46,89 @@ struct alignas(64) PacketRays {
   float inverse_z[kRays], shear_x[kRays], shear_y[kRays];
   float signature[kRays];  ///< twice the main axis, plus one where the ray runs down it; below zero: takes no part
   std::uint32_t primitive[kRays], triangle[kRays], place[kRays];
+  float float_u[kRays], float_v[kRays];
   double u[kRays], v[kRays], sum[kRays];
 
-  /// Where ray `slot` stands behind the tile's first. Slots 16 k to 16 k + 15 are a square of four by four.
+  /// Where ray `slot` stands behind the tile's first. Slots 16 k to 16 k + 15 are a square of four by four; slots 4 k
+  /// to 4 k + 3 are neighbours.
   static HWY_INLINE void fill_places(const Tile& tile, std::uint32_t* place) {
-    for (std::uint32_t slot = 0; slot < kPacketRays; ++slot) {
+    for (std::uint32_t slot = 0; slot < kPacketRays; slot += 4) {
       std::uint32_t column = slot, row = 0;
       if (tile.rows > 1) {
-        column = (slot & 3) + (slot >> 2 & 4);
+        column = slot >> 2 & 4;
         row = (slot >> 2 & 3) + (slot >> 3 & 4);
       }
-      const bool is_there = column < tile.columns && row < tile.rows;
-      place[slot] = is_there ? static_cast<std::uint32_t>(row * tile.stride + column) : kNowhere;
+      const std::uint32_t first = static_cast<std::uint32_t>(row * tile.stride) + column;
+      for (std::uint32_t i = 0; i < 4; ++i)
+        place[slot + i] = column + i < tile.columns && row < tile.rows ? first + i : kNowhere;
     }
   }
   static constexpr std::uint32_t kNowhere = 0xffffffffu;
 
   HWY_INLINE void load(const Ray* rays, const Tile& tile) {
     fill_places(tile, place);
-    for (int slot = 0; slot < kRays; ++slot) {
-      if (place[slot] == kNowhere) {
-        // The direction zero takes no part.
-        for (int axis = 0; axis < 3; ++axis) origin[axis][slot] = direction[axis][slot] = 0;
-        tmin[slot] = tmax[slot] = 0;
-        continue;
-      }
-      const Ray& ray = rays[tile.first + place[slot]];
-      origin[0][slot] = ray.origin.x, origin[1][slot] = ray.origin.y, origin[2][slot] = ray.origin.z;
-      direction[0][slot] = ray.direction.x, direction[1][slot] = ray.direction.y, direction[2][slot] = ray.direction.z;
-      tmin[slot] = ray.tmin, tmax[slot] = ray.tmax;
+    for (int slot = 0; slot < kRays; slot += 4) {
+      const bool are_all_there = place[slot + 3] != kNowhere;
+      if (are_all_there && load_four(rays + tile.first + place[slot], slot)) continue;
+      for (int i = slot; i < slot + 4; ++i) load_one(rays + tile.first, i);
     }
+    // The next tile of a picture, as a number: there may be none.
+    const std::uintptr_t next = reinterpret_cast<std::uintptr_t>(rays + tile.first) + tile.columns * sizeof(Ray);
+    for (std::size_t row = 0; row < tile.rows; ++row)
+      for (std::size_t byte = 0; byte < tile.columns * sizeof(Ray); byte += 64)
+        hwy::Prefetch(reinterpret_cast<const char*>(next + row * tile.stride * sizeof(Ray) + byte));
+  }
+
+  /// False without vectors of four.
+  HWY_INLINE bool load_four([[maybe_unused]] const Ray* rays, [[maybe_unused]] int slot) {
+#if HWY_TARGET == HWY_SCALAR
+    return false;
+#else
+    const FourTag d;
+    const auto columns = [&](int half, float* x, float* y, float* z, float* t) HWY_ATTR {
+      const float* const from = reinterpret_cast<const float*>(rays) + 4 * half;
+      auto a = hn::LoadU(d, from), b = hn::LoadU(d, from + 8), c = hn::LoadU(d, from + 16), e = hn::LoadU(d, from + 24);
+      transpose_four(a, b, c, e);
+      hn::Store(a, d, x + slot);
+      hn::Store(b, d, y + slot);
+      hn::Store(c, d, z + slot);
+      hn::Store(e, d, t + slot);
+    };
+    columns(0, origin[0], origin[1], origin[2], tmin);
+    columns(1, direction[0], direction[1], direction[2], tmax);
+    return true;
+#endif
+  }
+
+  HWY_INLINE void load_one(const Ray* rays, int slot) {
+    if (place[slot] == kNowhere) {
+      // The direction zero takes no part.
+      for (int axis = 0; axis < 3; ++axis) origin[axis][slot] = direction[axis][slot] = 0;
+      tmin[slot] = tmax[slot] = 0;
+      return;
+    }
+    const Ray& ray = rays[place[slot]];
+    origin[0][slot] = ray.origin.x, origin[1][slot] = ray.origin.y, origin[2][slot] = ray.origin.z;
+    direction[0][slot] = ray.direction.x, direction[1][slot] = ray.direction.y, direction[2][slot] = ray.direction.z;
+    tmin[slot] = ray.tmin, tmax[slot] = ray.tmax;
+  }
+
+  /// Bit s + 1 for each signature s.
+  HWY_INLINE std::uint32_t signatures_present() const {
+    std::uint32_t present = 0;
+    const RayTag d;
+    for (int s = -1; s < 6; ++s) {
+      auto some = hn::Eq(hn::Load(d, signature), hn::Set(d, static_cast<float>(s)));
+      for (int i = static_cast<int>(hn::Lanes(d)); i < kRays; i += static_cast<int>(hn::Lanes(d)))
+        some = hn::Or(some, hn::Eq(hn::Load(d, signature + i), hn::Set(d, static_cast<float>(s))));
+      present |= std::uint32_t{!hn::AllFalse(d, some)} << (s + 1);
+    }
+    return present;
+  }
+
+  /// So that rays that hit nothing can be divided too.
+  HWY_INLINE void clear_locations() {
+    for (int i = 0; i < kRays; ++i) u[i] = v[i] = 0, sum[i] = 1;
   }
 
   /// Scales the directions, finds the main axes and who takes part.
@@ -107,13 +175,19 @@ struct alignas(64) PacketRays {
   /// The constants of the box tests.
   HWY_INLINE void prepare_boxes(const Box& bounds) {
     const RayTag d;
+    const auto one = hn::Set(d, 1.0f), most = hn::Set(d, 1e37f);
     for (int axis = 0; axis < 3; ++axis) {
       const auto extent = hn::Set(d, maximum(std::fabs(bounds.lower[axis]), std::fabs(bounds.upper[axis])));
+      auto farthest = one;
+      for (int i = 0; i < kRays; i += static_cast<int>(hn::Lanes(d)))
+        farthest = hn::Max(farthest, hn::Add(extent, hn::Abs(hn::Load(d, origin[axis] + i))));
+      // What the reciprocal is limited to is no less than this for any ray, and hardly any reciprocal is above it.
+      const auto lowest_bound = hn::Set(d, 1e37f / hn::GetLane(hn::MaxOfLanes(d, farthest)));
       for (int i = 0; i < kRays; i += static_cast<int>(hn::Lanes(d))) {
         const auto o = hn::Load(d, origin[axis] + i), da = hn::Load(d, direction[axis] + i);
         const auto reach = hn::Add(extent, hn::Abs(o));
-        const auto bound = hn::Div(hn::Set(d, 1e37f), hn::Max(reach, hn::Set(d, 1.0f)));
-        const auto r = hn::Min(hn::Div(hn::Set(d, 1.0f), hn::Abs(da)), bound);
+        auto r = hn::Div(one, hn::Abs(da));
+        if (HWY_UNLIKELY(!hn::AllTrue(d, hn::Le(r, lowest_bound)))) r = hn::Min(r, hn::Div(most, hn::Max(reach, one)));
         const auto pad = hn::Mul(hn::Mul(hn::Set(d, 12 * 0x1p-24f), reach), r);
         const auto signed_r = hn::CopySign(r, da);
         const auto offset = hn::Neg(hn::Mul(o, signed_r));
@@ -124,15 +198,23 @@ struct alignas(64) PacketRays {
     }
   }
 
-  /// The constants of the triangle tests, for rays of one main axis.
+  /// The shear of the beam, and in robust mode of the triangle tests, for rays of one main axis.
+  template <bool kRobust>
   HWY_INLINE void prepare_triangles(int kx, int ky, int kz) {
     const RayTag d;
     for (int i = 0; i < kRays; i += static_cast<int>(hn::Lanes(d))) {
       const auto dz = hn::Load(d, direction[kz] + i);
-      hn::Store(hn::Div(hn::Set(d, 1.0f), dz), d, inverse_z + i);
-      // The same as the quotient in double precision, rounded.
-      hn::Store(hn::Div(hn::Load(d, direction[kx] + i), dz), d, shear_x + i);
-      hn::Store(hn::Div(hn::Load(d, direction[ky] + i), dz), d, shear_y + i);
+      const auto dx = hn::Load(d, direction[kx] + i), dy = hn::Load(d, direction[ky] + i);
+      const auto inverse = hn::Div(hn::Set(d, 1.0f), dz);
+      if constexpr (kRobust) {
+        hn::Store(inverse, d, inverse_z + i);
+        // The same as the quotient in double precision, rounded.
+        hn::Store(hn::Div(dx, dz), d, shear_x + i);
+        hn::Store(hn::Div(dy, dz), d, shear_y + i);
+      } else {
+        hn::Store(hn::Mul(dx, inverse), d, shear_x + i);
+        hn::Store(hn::Mul(dy, inverse), d, shear_y + i);
+      }
     }
   }
 

@@ -161,14 +161,12 @@ HWY_INLINE void count_leaf(const Block* block, const Block* end, Counts& counts)
 }
 
 template <int W, class Leaf, bool kRobust, bool kCount>
-HWY_INLINE bool traverse_closest(const Layout& layout, const RaySetup& ray, StackEntry* const stack, Best<Leaf>& best,
-                                 Counts* counts) {
+HWY_INLINE bool traverse_closest(const Layout& layout, const RaySetup& ray, StackEntry* const stack, StackEntry* top,
+                                 std::uint32_t word, Best<Leaf>& best, Counts* counts) {
   using Block = typename Leaf::Block;
   const auto* const nodes = reinterpret_cast<const WideNode<W>*>(layout.nodes.data());
   const auto* const blocks = reinterpret_cast<const Block*>(layout.triangles.data());
   const BoxTest<W> test(ray);
-  StackEntry* top = stack;
-  std::uint32_t word = layout.root;
   alignas(64) float entry[W];
   for (;;) {
     std::uint32_t hit = 1;
@@ -197,14 +195,13 @@ HWY_INLINE bool traverse_closest(const Layout& layout, const RaySetup& ray, Stac
 /// last, so distances are of no use: a node's hits stay the bits they are, and what waits on the stack is a node with
 /// the children of it that are left.
 template <int W, class Leaf, bool kRobust, bool kCount>
-HWY_INLINE bool traverse_any(const Layout& layout, const RaySetup& ray, StackEntry* const stack, Best<Leaf>& best,
-                             Counts* counts) {
+HWY_INLINE bool traverse_any(const Layout& layout, const RaySetup& ray, StackEntry* const stack, StackEntry* top,
+                             std::uint32_t word, Best<Leaf>& best, Counts* counts) {
   using Block = typename Leaf::Block;
   const auto* const nodes = reinterpret_cast<const WideNode<W>*>(layout.nodes.data());
   const auto* const blocks = reinterpret_cast<const Block*>(layout.triangles.data());
   const BoxTest<W> test(ray);
-  StackEntry* top = stack;
-  std::uint32_t word = layout.root, node = 0, left = 0;  // `left`: children of `node` still to be tried
+  std::uint32_t node = 0, left = 0;  // `left`: children of `node` still to be tried
   alignas(64) float entry[W];
   for (;;) {
     if (word & layouts::kLeafBit) {
@@ -253,11 +250,12 @@ HWY_INLINE bool trace(const Layout& layout, const Ray& ray, RaySetup& setup, Bes
   if constexpr (kCount) counts->rays = 1;
   if (layout.root == layouts::kNoRoot || !set_up_ray<kRobust>(ray, layout.bounds, setup)) return false;
   best.t = setup.tmax;
+  StackEntry* const entries = stack.entries();
   bool hit;
   if constexpr (kAny)
-    hit = traverse_any<W, Leaf, kRobust, kCount>(layout, setup, stack.entries(), best, counts);
+    hit = traverse_any<W, Leaf, kRobust, kCount>(layout, setup, entries, entries, layout.root, best, counts);
   else
-    hit = traverse_closest<W, Leaf, kRobust, kCount>(layout, setup, stack.entries(), best, counts);
+    hit = traverse_closest<W, Leaf, kRobust, kCount>(layout, setup, entries, entries, layout.root, best, counts);
   if constexpr (kCount) counts->hits = hit;
   return hit;
 }

@@ -132,6 +132,20 @@ TEST(Batch, PicturesRowByRow) {
     }
 }
 
+// Every ray of a tile meets leaves of its own, so packets end and their rays go on alone with the subtrees that wait:
+// more of them than are handed over at once, where rays see the whole of a cloud.
+TEST(Batch, PacketsThatFallApart) {
+  const TriangleMesh mesh = test::soup(test::effort(20000, 20), 6);
+  for (const char* layout : {"wide8", "wide8-quads", "wide16"})
+    for (const std::string& isa : queries::supported_isas()) {
+      const Accel accel = make(mesh, layout, isa);
+      for (const bool lights : {false, true}) {
+        const auto rays = picture(accel, 48, test::kInstrumented ? 8 : 48, lights);
+        expect_the_answers_of_single_rays(accel, rays, std::string(layout) + (lights ? " lights" : " camera"));
+      }
+    }
+}
+
 TEST(Batch, AgreesWithBruteForce) {
   const TriangleMesh mesh = test::icosphere(2);
   const auto rays = test::rays_from_inside(mesh, {}, 1, test::Aim::random, 300, 5);
