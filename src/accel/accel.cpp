@@ -56,6 +56,8 @@ struct Accel::State {
   std::string isa;
   std::shared_ptr<Executor> executor;
   std::size_t excluded = 0;
+  /// By mode and question. On a line of their own, for calls write to them.
+  alignas(64) mutable queries::FasterWay faster_ways[2][2];
 
   const queries::BatchMethods& methods(queries::Mode mode) const {
     return mode == queries::Mode::robust ? robust : fast;
@@ -88,7 +90,8 @@ struct Accel::State {
   Status batch(std::span<const Ray> rays, const queries::BatchAnswers& answers, queries::Mode mode,
                queries::Traversal traversal) const {
     const auto cut = queries::cut_batch(methods(mode), rays, traversal);
-    queries::FasterWay faster_way;
+    queries::FasterWay& faster_way = faster_ways[mode == queries::Mode::fast][answers.any()];
+    faster_way.begin_call(rays.size());
     return for_chunks(rays.size(), cut.chunk, [&](std::size_t begin, std::size_t n) {
       queries::trace_batch(methods(mode), layout, traversal, cut.row, faster_way, rays.subspan(begin, n),
                            answers.from(begin));

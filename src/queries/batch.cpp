@@ -17,9 +17,11 @@ constexpr std::size_t kChunk = 8192, kSortedChunk = 32768;
 constexpr std::size_t kPiece = 2048, kCopiedPiece = 512;
 /// Rays that a trial takes for each way; fewer are not timed.
 constexpr std::size_t kTrial = 256, kLeastTrial = 128;
-/// Rays from one trial to the next: the first ones follow soon, and where one way is far faster there are few.
-constexpr std::size_t kFirstTrials = 4, kBetweenFirstTrials = 512, kBetweenTrials = 16384, kBetweenClearTrials = 65536;
-constexpr float kClear = 0.4f;  ///< of the logarithm: a third faster
+/// Rays from one trial to the next: the first ones follow soon, and the more one way is faster the fewer there are.
+constexpr std::size_t kFirstTrials = 4, kBetweenFirstTrials = 2048, kBetweenTrials = 16384;
+constexpr float kMoreBetween = 8;  ///< times as many more where one way is twice as fast
+/// Of a trial in the mean of all; the first ones weigh more.
+constexpr float kLeastWeight = 0.3f;
 /// So many incoherent tiles in a row, and of those that follow only one is looked at for each kUnseen taken as such.
 constexpr std::size_t kIncoherentRun = 8, kUnseen = 3;
 /// Tiles passed over, at most, until a packet is tried again where packets have given up.
@@ -138,6 +140,15 @@ void trace_in_flight(const BatchMethods& methods, const layouts::Layout& layout,
     methods.batch.interleaved_closest(layout, rays, count, a.hits, a.normals);
 }
 
+/// Rays that are copied together, and their answers.
+struct Rest {
+  Ray rays[kCopiedPiece];
+  std::size_t places[kCopiedPiece];
+  Hit hits[kCopiedPiece];
+  Vec3 normals[kCopiedPiece];
+  std::uint8_t occluded[kCopiedPiece];
+};
+
 /// Traces a chunk piece by piece.
 class ChunkTracer {
  public:
@@ -221,8 +232,9 @@ class ChunkTracer {
         continue;
       }
       if (rest_count_ + tile.columns > kCopiedPiece) flush_rest();
+      if (!rest_) rest_ = std::make_unique<Rest>();
       for (std::uint32_t column = 0; column < tile.columns; ++column, ++rest_count_)
-        rest_[rest_count_] = rays_[begin + column], rest_places_[rest_count_] = begin + column;
+        rest_->rays[rest_count_] = rays_[begin + column], rest_->places[rest_count_] = begin + column;
     }
   }
 
@@ -231,18 +243,18 @@ class ChunkTracer {
     if (rest_count_ == 0) return;
     BatchAnswers to;
     if (answers_.any())
-      to.occluded = rest_occluded_;
+      to.occluded = rest_->occluded;
     else
-      to.hits = rest_hits_, to.normals = answers_.normals ? rest_normals_ : nullptr;
-    piece(rest_, rest_count_, to);
+      to.hits = rest_->hits, to.normals = answers_.normals ? rest_->normals : nullptr;
+    piece(rest_->rays, rest_count_, to);
     for (std::size_t i = 0; i < rest_count_; ++i) {
-      const std::size_t place = rest_places_[i];
+      const std::size_t place = rest_->places[i];
       if (answers_.any()) {
-        answers_.occluded[place] = rest_occluded_[i];
+        answers_.occluded[place] = rest_->occluded[i];
         continue;
       }
-      answers_.hits[place] = rest_hits_[i];
-      if (answers_.normals) answers_.normals[place] = rest_normals_[i];
+      answers_.hits[place] = rest_->hits[i];
+      if (answers_.normals) answers_.normals[place] = rest_->normals[i];
     }
     rest_count_ = 0;
   }
@@ -284,11 +296,7 @@ class ChunkTracer {
   bool was_packet_ = false;
   std::size_t skipping_ = 0, to_skip_ = 0, incoherent_ = 0, unseen_ = 0;
   std::size_t rest_count_ = 0;
-  Ray rest_[kCopiedPiece];
-  std::size_t rest_places_[kCopiedPiece];
-  Hit rest_hits_[kCopiedPiece];
-  Vec3 rest_normals_[kCopiedPiece];
-  std::uint8_t rest_occluded_[kCopiedPiece];
+  std::unique_ptr<Rest> rest_;
 };
 
 void trace_sorted(const BatchMethods& methods, const layouts::Layout& layout, std::span<const Ray> rays,
@@ -314,6 +322,12 @@ void trace_sorted(const BatchMethods& methods, const layouts::Layout& layout, st
 
 }  // namespace
 
+void FasterWay::begin_call(std::size_t rays) {
+  if (rays < kBetweenTrials) return;
+  until_trial_.store(0, std::memory_order_relaxed);
+  next_weight_.store(std::max(0.6f, next_weight_.load(std::memory_order_relaxed)), std::memory_order_relaxed);
+}
+
 bool FasterWay::try_both(std::size_t rays) {
   std::size_t until = until_trial_.load(std::memory_order_relaxed);
   if (until > rays) {
@@ -321,11 +335,9 @@ bool FasterWay::try_both(std::size_t rays) {
     return false;
   }
   const bool is_early = trials_.fetch_add(1, std::memory_order_relaxed) < kFirstTrials;
-  const bool is_clear = std::fabs(log_ratio_.load(std::memory_order_relaxed)) > kClear;
-  until_trial_.store(is_early   ? kBetweenFirstTrials
-                     : is_clear ? kBetweenClearTrials
-                                : kBetweenTrials,
-                     std::memory_order_relaxed);
+  const float difference = std::fabs(log_ratio_.load(std::memory_order_relaxed));
+  const auto later = static_cast<std::size_t>((1 + kMoreBetween * difference) * static_cast<float>(kBetweenTrials));
+  until_trial_.store(is_early ? kBetweenFirstTrials : later, std::memory_order_relaxed);
   return true;
 }
 
@@ -333,7 +345,10 @@ void FasterWay::record(double in_flight, double single) {
   // Of two threads one may win: what the other saw is lost, no more. A turn of another process does not decide.
   if (!(in_flight > 0 && single > 0)) return;
   const auto seen = static_cast<float>(std::clamp(std::log2(in_flight / single), -1.0, 1.0));
-  log_ratio_.store(0.7f * log_ratio_.load(std::memory_order_relaxed) + 0.3f * seen, std::memory_order_relaxed);
+  const float weight = next_weight_.load(std::memory_order_relaxed);
+  log_ratio_.store((1 - weight) * log_ratio_.load(std::memory_order_relaxed) + weight * seen,
+                   std::memory_order_relaxed);
+  next_weight_.store(std::max(kLeastWeight, weight / (1 + weight)), std::memory_order_relaxed);
 }
 
 BatchCut cut_batch(const BatchMethods& methods, std::span<const Ray> rays, Traversal traversal) {

@@ -33,11 +33,13 @@ struct BatchCut {
 /// Looks at a few hundred rays of the stream. Deterministic.
 BatchCut cut_batch(const BatchMethods& methods, std::span<const Ray> rays, Traversal traversal);
 
-/// Which way through incoherent rays is faster in this call, in flight or one by one: that depends on the tree, the
-/// rays and the processor's caches, and answers do not depend on it. So now and then some rays go each way, against the
-/// clock. Of one call; its threads may share it.
+/// Which way through incoherent rays is faster, in flight or one by one: that depends on the tree, the rays and the
+/// processor's caches, and answers do not depend on it. So now and then some rays go each way, against the clock. What
+/// is found holds from one call to the next: short calls could not afford to find it out. Safe to share by threads.
 class FasterWay {
  public:
+  /// A call with so many rays begins. They may be of another kind than the last ones: one with many asks again at once.
+  void begin_call(std::size_t rays);
   /// Is it time to try both ways? `rays` are traced next, in any case.
   bool try_both(std::size_t rays);
   /// What both ways took for as many rays each, any unit.
@@ -48,6 +50,7 @@ class FasterWay {
   std::atomic<std::size_t> until_trial_{0};  ///< rays
   std::atomic<std::uint32_t> trials_{0};
   std::atomic<float> log_ratio_{-0.15f};  ///< of time in flight over time one by one, base 2, mostly of the last trials
+  std::atomic<float> next_weight_{1.0f};  ///< of the next trial in that mean
 };
 
 /// Where the answers go: for a closest hit `hits` and perhaps `normals`, else `occluded`.
@@ -62,8 +65,8 @@ struct BatchAnswers {
   }
 };
 
-/// Traces one chunk. Memory besides a few kilobytes is allocated by `sorted` alone, in proportion to the chunk. Throws
-/// std::bad_alloc.
+/// Traces one chunk. Memory is allocated for rays that are copied together, some 40 KB, and by `sorted`, in proportion
+/// to the chunk. Throws std::bad_alloc.
 void trace_batch(const BatchMethods& methods, const layouts::Layout& layout, Traversal traversal, std::size_t row,
                  FasterWay& faster_way, std::span<const Ray> rays, const BatchAnswers& answers);
 

@@ -27,19 +27,49 @@ TEST(FasterWay, OneDisturbedTrialDecidesNothing) {
   EXPECT_FALSE(way.is_in_flight());
 }
 
+TEST(FasterWay, TheFirstTrialDecides) {
+  FasterWay way;
+  way.record(1.1, 1);
+  EXPECT_FALSE(way.is_in_flight());
+  FasterWay other;
+  other.record(1, 1.1);
+  EXPECT_TRUE(other.is_in_flight());
+}
+
+int trials_of(FasterWay& way, int pieces) {
+  int trials = 0;
+  for (int i = 0; i < pieces; ++i) trials += way.try_both(512);
+  return trials;
+}
+
 TEST(FasterWay, TriesBothAtOnceAndThenRarely) {
   FasterWay way;
   EXPECT_TRUE(way.try_both(512));
-  int trials = 0;
-  for (int i = 0; i < 1024; ++i) trials += way.try_both(512);
-  EXPECT_GE(trials, 512 * 1024 / 32768);
+  const int trials = trials_of(way, 1024);
+  EXPECT_GE(trials, 512 * 1024 / 65536);
   EXPECT_LE(trials, 512 * 1024 / 8192);
 
   for (int i = 0; i < 20; ++i) way.record(1, 2);
-  int clear_trials = 0;
-  for (int i = 0; i < 1024; ++i) clear_trials += way.try_both(512);
+  const int clear_trials = trials_of(way, 1024);
   EXPECT_GE(clear_trials, 1);
   EXPECT_LT(2 * clear_trials, trials);
+}
+
+TEST(FasterWay, LongCallsAskAgainAtOnceAndShortOnesDoNot) {
+  FasterWay way;
+  trials_of(way, 1024);
+  for (int i = 0; i < 20; ++i) way.record(1, 2);
+  trials_of(way, 1024);
+  while (!way.try_both(512)) {
+  }
+  way.begin_call(1000);
+  EXPECT_FALSE(way.try_both(512));
+  way.begin_call(1000000);
+  EXPECT_TRUE(way.try_both(512));
+  // Their rays may be of another kind, so two trials turn the decision that many had made.
+  way.record(2, 1);
+  way.record(2, 1);
+  EXPECT_FALSE(way.is_in_flight());
 }
 
 }  // namespace
