@@ -227,6 +227,20 @@ struct alignas(64) PacketRays {
     s.shear_x = shear_x[slot], s.shear_y = shear_y[slot], s.inverse_z = inverse_z[slot];
     return s;
   }
+
+  /// And what a traversal of single rays reads.
+  template <bool kRobust>
+  HWY_INLINE void set_up_alone(int slot, int kz, RaySetup& s) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      s.origin[axis] = origin[axis][slot], s.direction[axis] = direction[axis][slot];
+      s.reciprocal[axis] = reciprocal[axis][slot];
+      s.entry_add[axis] = entry_add[axis][slot], s.exit_add[axis] = exit_add[axis][slot];
+      const int negative = std::signbit(s.direction[axis]);
+      s.entry_plane[axis] = 2 * axis + negative, s.exit_plane[axis] = 2 * axis + !negative;
+    }
+    s.tmin = tmin[slot], s.tmax = tmax[slot], s.t_scale = t_scale[slot];
+    if constexpr (kRobust) set_main_axis(kz, s);
+  }
 };
 
 }  // namespace boxwood::queries::HWY_NAMESPACE

@@ -126,7 +126,7 @@ bool trace_packet(const Layout& layout, const Ray* rays, const Tile& tile, Packe
   if (answers.normals) answers.normals += tile.first;
   if (answers.occluded) answers.occluded += tile.first;
   Stack stack(layout.max_stack + W);
-  PacketTraversal<W, Leaf, kRobust, kAny> traversal(layout, rays + tile.first, packet);
+  PacketTraversal<W, Leaf, kRobust, kAny> traversal(layout, packet);
   if (present & 1) answer<Leaf, kRobust, kAny>(layout, packet, -1, answers);
   for (std::uint32_t left = signatures; left; left &= left - 1) {
     const int signature = std::countr_zero(left);
