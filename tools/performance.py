@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Measures, and pastes the tables into docs/performance.md between their markers.
+"""Measures, and pastes the tables into docs/performance.md and docs/batches.md between their markers.
 
-    performance.py PROGRAM [--only duel,duel-again,ablation,scaling,roofline] [--cameras FILE] [--document FILE] [MESH...]
+    performance.py PROGRAM [--only duel,duel-again,ablation,scaling,roofline,batches] [--cameras FILE] [--document FILE] [MESH...]
 
 `duel` and `duel-again` are the same command, so that both runs' spread is seen. Each takes minutes; leave the machine
 alone meanwhile.
@@ -14,6 +14,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 ABLATED = ["scene:atrium,triangles=250000", "scene:organic,triangles=250000", "scene:foliage,triangles=250000"]
+PROCEDURAL = ["scene:city,triangles=250000", "scene:organic,triangles=250000"]
 
 
 def output_of(command):
@@ -33,6 +34,7 @@ def commands(options):
         "ablation": [options.program, "ablate", *options.meshes, *ABLATED, *cameras, "--quiet", "--markdown", "-"],
         "scaling": [ROOT / "tools/scaling.py", options.program, "--rivals", "embree:medium", "--builder", "balanced"],
         "roofline": [ROOT / "tools/roofline.py", options.program],
+        "batches": [ROOT / "tools/batches.py", options.program, *options.meshes, *PROCEDURAL, *cameras],
     }
 
 
@@ -47,16 +49,17 @@ def main():
     parser = argparse.ArgumentParser(description="Bring the tables of docs/performance.md up to date")
     parser.add_argument("program")
     parser.add_argument("meshes", nargs="*")
-    parser.add_argument("--only", default="duel,duel-again,ablation,scaling,roofline")
+    parser.add_argument("--only", default="duel,duel-again,ablation,scaling,roofline,batches")
     parser.add_argument("--cameras")
-    parser.add_argument("--document", type=pathlib.Path, default=ROOT / "docs/performance.md")
+    parser.add_argument("--document", type=pathlib.Path, help="default: the page that the tables belong to")
     options = parser.parse_intermixed_args()  # meshes may stand behind options
     known = commands(options)
     for name in options.only.split(","):
         if name not in known:
             sys.exit(f"performance.py: there is no '{name}'; there are {', '.join(known)}")
     for name in options.only.split(","):
-        paste(options.document, name, output_of(known[name]))
+        page = ROOT / ("docs/batches.md" if name == "batches" else "docs/performance.md")
+        paste(options.document or page, name, output_of(known[name]))
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ constexpr std::size_t kPiece = 2048, kCopiedPiece = 512;
 /// Rays that a trial takes for each way; fewer are not timed.
 constexpr std::size_t kTrial = 256, kLeastTrial = 128;
 /// Rays from one trial to the next: the first ones follow soon, and the more one way is faster the fewer there are.
-constexpr std::size_t kFirstTrials = 4, kBetweenFirstTrials = 2048, kBetweenTrials = 16384;
+constexpr std::size_t kBetweenFirstTrials = 2048, kBetweenTrials = 16384;
 constexpr float kMoreBetween = 8;  ///< times as many more where one way is twice as fast
 /// Of a trial in the mean of all; the first ones weigh more.
 constexpr float kLeastWeight = 0.3f;
@@ -325,6 +325,9 @@ void trace_sorted(const BatchMethods& methods, const layouts::Layout& layout, st
 void FasterWay::begin_call(std::size_t rays) {
   if (rays < kBetweenTrials) return;
   until_trial_.store(0, std::memory_order_relaxed);
+  // The longer the call, the more of its first trials follow soon: one that was disturbed must not decide for long.
+  const auto early = static_cast<std::uint32_t>(std::min<std::size_t>(FasterWay::kFirstTrials, rays / kBetweenTrials));
+  early_trials_.store(std::max(early, early_trials_.load(std::memory_order_relaxed)), std::memory_order_relaxed);
   next_weight_.store(std::max(0.6f, next_weight_.load(std::memory_order_relaxed)), std::memory_order_relaxed);
 }
 
@@ -334,10 +337,11 @@ bool FasterWay::try_both(std::size_t rays) {
     until_trial_.store(until - rays, std::memory_order_relaxed);
     return false;
   }
-  const bool is_early = trials_.fetch_add(1, std::memory_order_relaxed) < kFirstTrials;
+  const std::uint32_t early = early_trials_.load(std::memory_order_relaxed);
+  if (early > 0) early_trials_.store(early - 1, std::memory_order_relaxed);
   const float difference = std::fabs(log_ratio_.load(std::memory_order_relaxed));
   const auto later = static_cast<std::size_t>((1 + kMoreBetween * difference) * static_cast<float>(kBetweenTrials));
-  until_trial_.store(is_early ? kBetweenFirstTrials : later, std::memory_order_relaxed);
+  until_trial_.store(early > 1 ? kBetweenFirstTrials : later, std::memory_order_relaxed);
   return true;
 }
 

@@ -38,6 +38,9 @@ BatchCut cut_batch(const BatchMethods& methods, std::span<const Ray> rays, Trave
 /// is found holds from one call to the next: short calls could not afford to find it out. Safe to share by threads.
 class FasterWay {
  public:
+  /// Trials that follow each other soon, in the first calls and at the beginning of long ones.
+  static constexpr std::uint32_t kFirstTrials = 4;
+
   /// A call with so many rays begins. They may be of another kind than the last ones: one with many asks again at once.
   void begin_call(std::size_t rays);
   /// Is it time to try both ways? `rays` are traced next, in any case.
@@ -48,7 +51,7 @@ class FasterWay {
 
  private:
   std::atomic<std::size_t> until_trial_{0};  ///< rays
-  std::atomic<std::uint32_t> trials_{0};
+  std::atomic<std::uint32_t> early_trials_{kFirstTrials};
   std::atomic<float> log_ratio_{-0.15f};  ///< of time in flight over time one by one, base 2, mostly of the last trials
   std::atomic<float> next_weight_{1.0f};  ///< of the next trial in that mean
 };

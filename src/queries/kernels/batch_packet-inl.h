@@ -139,7 +139,7 @@ class PacketTraversal : PacketTriangles<Leaf, kRobust, kAny> {
     const RayTag d;
     alignas(64) StackEntry waiting[PacketRays::kRays][kAtOnce];
     alignas(64) float distances[hn::MaxLanes(RayTag())];
-    Stack own(layout_.max_stack + W);
+    Stack own(layout_.max_stack + kAtOnce + W);  // sorted, they may wait while a subtree from higher up is gone through
     StackEntry* const base = own.entries();
     while (top != stack) {
       const StackEntry* const end = top;

@@ -72,5 +72,19 @@ TEST(FasterWay, LongCallsAskAgainAtOnceAndShortOnesDoNot) {
   EXPECT_FALSE(way.is_in_flight());
 }
 
+TEST(FasterWay, ADisturbedTrialAtALongCallsBeginningIsSoonMadeGood) {
+  FasterWay way;
+  for (int i = 0; i < 20; ++i) way.record(1, 1.3);
+  trials_of(way, 1024);
+  way.begin_call(1000000);
+  ASSERT_TRUE(way.try_both(512));
+  way.record(1000, 1);
+  EXPECT_FALSE(way.is_in_flight());
+  int pieces = 0;
+  for (; !way.is_in_flight() && pieces < 1000; ++pieces)
+    if (way.try_both(512)) way.record(1, 1.3);
+  EXPECT_LE(512 * pieces, 16384);
+}
+
 }  // namespace
 }  // namespace boxwood::queries
