@@ -195,12 +195,12 @@ class ChunkTracer {
       if (to_skip_ > 0) return --to_skip_, Outcome::coherent;
     }
     const BatchAnswers& a = answers_;
-    const bool done = a.any() ? methods_.batch.packet_any(layout_, rays_.data(), tile, a.occluded)
-                              : methods_.batch.packet_closest(layout_, rays_.data(), tile, a.hits, a.normals);
-    was_packet_ = done;
-    skipping_ = done ? 0 : std::min(kMostSkipped, 2 * skipping_ + 1);
+    const Packet packet = a.any() ? methods_.batch.packet_any(layout_, rays_.data(), tile, a.occluded)
+                                  : methods_.batch.packet_closest(layout_, rays_.data(), tile, a.hits, a.normals);
+    was_packet_ = packet == Packet::held_together;
+    skipping_ = packet == Packet::refused ? std::min(kMostSkipped, 2 * skipping_ + 1) : 0;
     to_skip_ = skipping_;
-    return done ? Outcome::done : Outcome::coherent;
+    return packet == Packet::refused ? Outcome::coherent : Outcome::done;
   }
 
   void incoherent(std::span<const Ray> rays, const BatchAnswers& answers) {

@@ -15,10 +15,13 @@ struct Tile {
   std::uint32_t columns = 0, rows = 1;
 };
 
+/// What became of a packet. `refused`: its rays go along too many axes, and their answers are still to be found.
+/// `fell_apart`: its rays have gone on alone.
+enum class Packet { refused, fell_apart, held_together };
+
 struct BatchKernels {
-  /// One packet. False where its rays go too different ways: then the answers are still to be found.
-  bool (*packet_closest)(const layouts::Layout&, const Ray* rays, const Tile&, Hit* hits, Vec3* normals);
-  bool (*packet_any)(const layouts::Layout&, const Ray* rays, const Tile&, std::uint8_t* occluded);
+  Packet (*packet_closest)(const layouts::Layout&, const Ray* rays, const Tile&, Hit* hits, Vec3* normals);
+  Packet (*packet_any)(const layouts::Layout&, const Ray* rays, const Tile&, std::uint8_t* occluded);
   /// Many rays in flight.
   void (*interleaved_closest)(const layouts::Layout&, const Ray* rays, std::size_t count, Hit* hits, Vec3* normals);
   void (*interleaved_any)(const layouts::Layout&, const Ray* rays, std::size_t count, std::uint8_t* occluded);

@@ -32,21 +32,21 @@ class PacketTraversal : PacketTriangles<Leaf, kRobust, kAny> {
         layout_(layout),
         nodes_(reinterpret_cast<const WideNode<W>*>(layout.nodes.data())) {}
 
-  /// Traces the rays whose limit is not below zero; they share this signature.
-  HWY_INLINE void run(int signature, StackEntry* const stack) {
+  /// Traces the rays whose limit is not below zero; they share this signature. False when they have gone on alone.
+  HWY_INLINE bool run(int signature, StackEntry* const stack) {
     static constexpr int kNext[] = {1, 2, 0};
     const int kz = signature >> 1, kx = kNext[kz], ky = kNext[kx];
     rays_.template prepare_triangles<kRobust>(kx, ky, kz);
     this->begin(kx, ky, kz);
-    if (!frustum_.enclose(rays_, layout_.bounds, kx, ky, kz, signature & 1)) return;
+    if (!frustum_.enclose(rays_, layout_.bounds, kx, ky, kz, signature & 1)) return true;
     if (layout_.root & layouts::kLeafBit) {
       float planes[6];
       for (int axis = 0; axis < 3; ++axis)
         planes[2 * axis] = layout_.bounds.lower[axis], planes[2 * axis + 1] = layout_.bounds.upper[axis];
       visit_leaf(layout_.root, planes, 1);
-      return;
+      return true;
     }
-    traverse(stack);
+    return traverse(stack);
   }
 
  private:
@@ -58,7 +58,7 @@ class PacketTraversal : PacketTriangles<Leaf, kRobust, kAny> {
   /// So many rays at a leaf are tested one by one.
   static constexpr int kFewRays = 3;
 
-  HWY_INLINE void traverse(StackEntry* const stack) {
+  HWY_INLINE bool traverse(StackEntry* const stack) {
     StackEntry* top = stack;
     int credit = kCredit;
     std::uint32_t node_index = layout_.root;
@@ -68,7 +68,7 @@ class PacketTraversal : PacketTriangles<Leaf, kRobust, kAny> {
       const std::uint32_t hit = frustum_.template test<W>(node, entry);
       push(node, node_index, hit, entry, top);
       for (;;) {
-        if (top == stack) return;
+        if (top == stack) return true;
         --top;
         if (entry_distance(*top) > frustum_.length()) continue;
         const auto place = static_cast<std::uint32_t>(*top);
@@ -78,9 +78,12 @@ class PacketTraversal : PacketTriangles<Leaf, kRobust, kAny> {
           node_index = word;
           break;
         }
-        if (visit_leaf(word, &parent.planes[0][0] + place % W, W)) return;
+        if (visit_leaf(word, &parent.planes[0][0] + place % W, W)) return true;
         credit += met_ - kLeafPrice;
-        if (credit < 0) return hand_over(stack, top);
+        if (credit < 0) {
+          hand_over(stack, top);
+          return false;
+        }
       }
     }
   }

@@ -105,10 +105,10 @@ HWY_INLINE void answer(const Layout& layout, PacketRays& rays, float signature, 
 
 /// One packet, in a pass for each main axis and sense of running along it; more than `kPasses` of them are too many.
 template <int W, class Leaf, bool kRobust, bool kAny>
-bool trace_packet(const Layout& layout, const Ray* rays, const Tile& tile, PacketAnswers answers) {
+Packet trace_packet(const Layout& layout, const Ray* rays, const Tile& tile, PacketAnswers answers) {
   constexpr int kPasses = 2;
   // Without vectors a packet gains nothing.
-  if constexpr (hn::MaxLanes(RayTag()) < 4) return false;
+  if constexpr (hn::MaxLanes(RayTag()) < 4) return Packet::refused;
   PacketRays packet;
   packet.load(rays, tile);
   packet.prepare();
@@ -117,7 +117,7 @@ bool trace_packet(const Layout& layout, const Ray* rays, const Tile& tile, Packe
   const int lanes = static_cast<int>(hn::Lanes(d));
   const std::uint32_t present = packet.signatures_present();
   const std::uint32_t signatures = present >> 1;
-  if (std::popcount(signatures) > kPasses) return false;
+  if (std::popcount(signatures) > kPasses) return Packet::refused;
   packet.prepare_boxes(layout.bounds);
   for (int i = 0; i < PacketRays::kRays; i += lanes)
     hn::Store(hn::Set(du, layouts::kInvalidPrimitive), du, packet.primitive + i);
@@ -128,6 +128,7 @@ bool trace_packet(const Layout& layout, const Ray* rays, const Tile& tile, Packe
   Stack stack(layout.max_stack + W);
   PacketTraversal<W, Leaf, kRobust, kAny> traversal(layout, packet);
   if (present & 1) answer<Leaf, kRobust, kAny>(layout, packet, -1, answers);
+  bool holds = true;
   for (std::uint32_t left = signatures; left; left &= left - 1) {
     const int signature = std::countr_zero(left);
     const auto mine = hn::Set(d, static_cast<float>(signature));
@@ -135,10 +136,10 @@ bool trace_packet(const Layout& layout, const Ray* rays, const Tile& tile, Packe
       const auto active = hn::Eq(hn::Load(d, packet.signature + i), mine);
       hn::Store(hn::IfThenElse(active, hn::Load(d, packet.tmax + i), hn::Set(d, -kInfinity)), d, packet.limit + i);
     }
-    if (layout.root != layouts::kNoRoot) traversal.run(signature, stack.entries());
+    if (layout.root != layouts::kNoRoot) holds &= traversal.run(signature, stack.entries());
     answer<Leaf, kRobust, kAny>(layout, packet, static_cast<float>(signature), answers);
   }
-  return true;
+  return holds ? Packet::held_together : Packet::fell_apart;
 }
 
 }  // namespace boxwood::queries::HWY_NAMESPACE
