@@ -24,7 +24,7 @@ constexpr float kMoreBetween = 8;  ///< times as many more where one way is twic
 constexpr float kLeastWeight = 0.3f;
 /// So many incoherent tiles in a row, and of those that follow only one is looked at for each kUnseen taken as such.
 constexpr std::size_t kIncoherentRun = 8, kUnseen = 3;
-/// Tiles passed over, at most, until a packet is tried again where packets have given up.
+/// Tiles passed over, at most, until a packet is tried again where one has been refused.
 constexpr std::size_t kMostSkipped = 32;
 
 /// Where there are fewer rays, looking for rows costs more than tiles gain.
@@ -181,7 +181,7 @@ class ChunkTracer {
  private:
   enum class Outcome { done, coherent, incoherent };
 
-  /// Where packets give up they are tried ever more rarely, until one gets through; and tiles behind a run of
+  /// Where packets are refused they are tried ever more rarely, until one gets through; and tiles behind a run of
   /// incoherent ones are not all looked at.
   Outcome packet(const Tile& tile, bool always) {
     // Behind a tile that was a packet there is one mostly, and it finds out itself if it is none.
