@@ -219,6 +219,7 @@ class PacketTraversal : PacketTriangles<Leaf, kRobust, kAny> {
       best.t = rays.limit[slot], best.primitive = rays.primitive[slot];
     }
   };
+
   /// The box test of single rays; which of two planes is entered first follows from the products.
   HWY_INLINE Mask meets(int i, const float* planes, int stride, V& near) const {
     const RayTag d;
