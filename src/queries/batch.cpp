@@ -111,9 +111,13 @@ std::size_t find_row(std::span<const Ray> rays, float size) {
     const float mean = mean_difference(rays, row, size);
     if (mean < least) least = mean, best = row;
   };
-  // A whole picture's width divides the number of its rays.
-  for (std::size_t row = kLeast; row <= most; ++row)
-    if (rays.size() % row == 0) consider(row);
+  // A whole picture's width divides the number of its rays. Divisors come in pairs.
+  for (std::size_t divisor = 1; divisor <= most && divisor * divisor <= rays.size(); ++divisor) {
+    if (rays.size() % divisor != 0) continue;
+    const std::size_t other = rays.size() / divisor;
+    if (divisor >= kLeast) consider(divisor);
+    if (other <= most && other > divisor) consider(other);
+  }
   if (least < enough) return best;
   // Part of a picture, or one that has no such width: worth the look only if there is much to be gained.
   if (rays.size() < kManyRays) return 0;
