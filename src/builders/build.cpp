@@ -13,11 +13,14 @@ namespace {
 
 constexpr std::size_t kChunk = 1 << 14;
 
-/// A box that holds something and can be calculated with.
+/// All bits in lanes 0 to 2 where the box holds something and can be calculated with.
+Float4 is_usable(const Box4& box) {
+  return at_most(Float4::fill(-kLargestCoordinate), box.lower) & at_most(box.lower, box.upper) &
+         at_most(box.upper, Float4::fill(kLargestCoordinate));
+}
+
 bool is_usable(const refs::Reference& reference, std::size_t primitive_count) {
-  const Box4 box = Box4::of(reference);
-  return reference.primitive < primitive_count && all_at_most(Float4::fill(-kLargestCoordinate), box.lower) &&
-         all_at_most(box.lower, box.upper) && all_at_most(box.upper, Float4::fill(kLargestCoordinate));
+  return reference.primitive < primitive_count && all_set(is_usable(Box4::of(reference)));
 }
 
 struct Checked {
@@ -30,10 +33,19 @@ Checked check_references(const refs::ReferenceSet& set, Executor& executor) {
   std::vector<Checked> chunks((references.size() + kChunk - 1) / kChunk);
   executor.for_chunks(references.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     Checked checked;
+    Float4 usable = Float4::fill_bits(~0u);
+    std::uint32_t largest = 0;
+    std::int64_t previous = begin == 0 ? -1 : std::int64_t(references[begin - 1].primitive);
     for (std::size_t i = begin; i < end; ++i) {
-      if (!is_usable(references[i], set.primitive_count)) checked.first_bad = std::min(checked.first_bad, i);
-      checked.increasing &= i == 0 || references[i - 1].primitive < references[i].primitive;
+      usable = usable & is_usable(Box4::of(references[i]));
+      const std::uint32_t primitive = references[i].primitive;
+      largest = std::max(largest, primitive);
+      checked.increasing &= previous < std::int64_t(primitive);
+      previous = primitive;
     }
+    if (!all_set(usable) || largest >= set.primitive_count)
+      for (checked.first_bad = begin; is_usable(references[checked.first_bad], set.primitive_count);)
+        ++checked.first_bad;
     chunks[chunk] = checked;
   });
   Checked all;

@@ -2,6 +2,7 @@
 // SIMD operation tests them together (Dammertz, Hanika and Keller 2008, bib key qbvh; Ernst and Greiner 2008; Wald,
 // Benthin and Boulos 2008), over blocks of four triangles stored the same way; `wide8-quads`, the
 // same nodes over blocks of four quads (quads.cpp). O(nodes + triangles), deterministic, parallel.
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstring>
@@ -18,23 +19,26 @@ namespace {
 
 /// False, with the block not filled in: a reference is not to a triangle of the mesh.
 bool fill_block(TriangleBlock& block, std::span<const std::uint32_t> references, const MeshView& mesh) {
-  const Float4 unused = Float4::fill(std::numeric_limits<float>::quiet_NaN());
-  Float4 corners[3][4] = {
-      {unused, unused, unused, unused}, {unused, unused, unused, unused}, {unused, unused, unused, unused}};
+  std::array<std::uint32_t, 3> vertices[4] = {};
+  std::uint32_t largest = 0;
   for (std::size_t lane = 0; lane < 4; ++lane) {
-    block.primitive[lane] = kInvalidPrimitive;
-    if (lane >= references.size()) continue;
-    const std::uint32_t primitive = references[lane];
-    block.primitive[lane] = primitive;
-    if (primitive >= mesh.triangle_count) return false;
-    const auto vertices = mesh.corners(primitive);
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (vertices[k] >= mesh.vertex_count) return false;
-      corners[k][lane] = mesh::load_vertex(mesh, vertices[k]);
+    if (lane >= references.size()) {
+      block.primitive[lane] = kInvalidPrimitive;
+      continue;
     }
+    const std::uint32_t primitive = block.primitive[lane] = references[lane];
+    if (primitive >= mesh.triangle_count) return false;
+    vertices[lane] = mesh.corners(primitive);
+    largest = std::max({largest, vertices[lane][0], vertices[lane][1], vertices[lane][2]});
   }
+  if (largest >= mesh.vertex_count) return false;
+  const mesh::VertexLoader load(mesh, largest);
   for (std::size_t k = 0; k < 3; ++k) {
-    auto& [x, y, z, rest] = corners[k];
+    Float4 corner[4];
+    for (std::size_t lane = 0; lane < 4; ++lane)
+      corner[lane] = lane < references.size() ? load(vertices[lane][k])
+                                              : Float4::fill(std::numeric_limits<float>::quiet_NaN());
+    auto& [x, y, z, rest] = corner;
     transpose(x, y, z, rest);
     x.store_anywhere(block.corner[k][0]);
     y.store_anywhere(block.corner[k][1]);

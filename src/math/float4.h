@@ -2,6 +2,7 @@
 // Minimum and maximum return the second argument when the first is NaN or both are zero, in both forms.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 
@@ -59,14 +60,20 @@ inline Float4 operator^(Float4 a, Float4 b) {
 inline Float4 less(Float4 a, Float4 b) {
   return {_mm_cmplt_ps(a.v, b.v)};
 }
-/// Is a <= b in lanes 0 to 2? Nothing is with a NaN.
-inline bool all_at_most(Float4 a, Float4 b) {
-  return (_mm_movemask_ps(_mm_cmple_ps(a.v, b.v)) & 7) == 7;
+/// All bits in the lanes where a <= b; none with a NaN.
+inline Float4 at_most(Float4 a, Float4 b) {
+  return {_mm_cmple_ps(a.v, b.v)};
+}
+/// Are the highest bits of lanes 0 to 2 set?
+inline bool all_set(Float4 mask) {
+  return (_mm_movemask_ps(mask.v) & 7) == 7;
+}
+inline Float4 absolute(Float4 v) {
+  return {_mm_andnot_ps(_mm_set1_ps(-0.0f), v.v)};
 }
 /// Are lanes 0 to 2 within +-limit? NaNs are not.
 inline bool all_within(Float4 v, float limit) {
-  const __m128 size = _mm_andnot_ps(_mm_set1_ps(-0.0f), v.v);
-  return (_mm_movemask_ps(_mm_cmple_ps(size, _mm_set1_ps(limit))) & 7) == 7;
+  return all_set(at_most(absolute(v), Float4::fill(limit)));
 }
 /// a in the lanes of the mask, b in the others.
 inline Float4 select(Float4 mask, Float4 a, Float4 b) {
@@ -162,16 +169,26 @@ inline Float4 operator|(Float4 a, Float4 b) {
 inline Float4 operator^(Float4 a, Float4 b) {
   return by_bits(a, b, [](std::uint32_t x, std::uint32_t y) { return x ^ y; });
 }
-inline Float4 less(Float4 a, Float4 b) {
-  Float4 mask;
-  for (int i = 0; i < 4; ++i) {
-    const std::uint32_t bits = a.v[i] < b.v[i] ? ~0u : 0u;
-    std::memcpy(&mask.v[i], &bits, 4);
-  }
-  return mask;
+template <class F>
+inline Float4 mask_by_lane(const Float4& a, const Float4& b, F f) {
+  return by_lane(a, b, [&](float x, float y) {
+    const std::uint32_t bits = f(x, y) ? ~0u : 0u;
+    float mask;
+    std::memcpy(&mask, &bits, 4);
+    return mask;
+  });
 }
-inline bool all_at_most(Float4 a, Float4 b) {
-  return a.v[0] <= b.v[0] && a.v[1] <= b.v[1] && a.v[2] <= b.v[2];
+inline Float4 less(Float4 a, Float4 b) {
+  return mask_by_lane(a, b, [](float x, float y) { return x < y; });
+}
+inline Float4 at_most(Float4 a, Float4 b) {
+  return mask_by_lane(a, b, [](float x, float y) { return x <= y; });
+}
+inline bool all_set(Float4 mask) {
+  return std::signbit(mask.v[0]) && std::signbit(mask.v[1]) && std::signbit(mask.v[2]);
+}
+inline Float4 absolute(Float4 v) {
+  return by_lane(v, v, [](float x, float) { return std::fabs(x); });
 }
 inline bool all_within(Float4 v, float limit) {
   const auto within = [limit](float x) { return x <= limit && x >= -limit; };

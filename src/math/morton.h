@@ -36,6 +36,10 @@ class MortonGrid {
     }
   }
   std::uint64_t code(Vec3 p) const { return morton_code(cell(p, 0), cell(p, 1), cell(p, 2)); }
+  /// A point's cell on an axis is (p - lower) * scale, rounded down, and at most the last.
+  double lower(int axis) const { return lower_[axis]; }
+  double scale(int axis) const { return scale_[axis]; }
+  double last_cell() const { return last_cell_; }
 
  private:
   std::uint32_t cell(Vec3 p, int axis) const {

@@ -37,7 +37,11 @@ std::size_t digit(std::uint64_t key, int shift) {
 bool place(LargeVector<Counts>& chunks, std::size_t items) {
   Counts first{};  // of each digit: its items in the chunks so far, in the end the place of its first one
   for (Counts& counts : chunks)
-    for (std::size_t d = 0; d < kDigits; ++d) first[d] += std::exchange(counts[d], first[d]);
+    for (std::size_t d = 0; d < kDigits; ++d) {
+      const std::uint32_t before = first[d];
+      first[d] = before + counts[d];
+      counts[d] = before;
+    }
   std::uint32_t next = 0;
   for (std::uint32_t& of_digit : first) {
     if (of_digit == items) return false;
@@ -91,8 +95,17 @@ bool sort_alike(std::span<KeyedIndex> items, int shift, std::size_t chunk_size, 
   }
   std::atomic<std::size_t> in_crowds{0};
   executor.for_chunks(ends.size(), 1, [&](std::size_t chunk, std::size_t, std::size_t) {
-    for (std::size_t first = chunk == 0 ? 0 : ends[chunk - 1], last; first < ends[chunk]; first = last) {
-      for (last = first + 1; last < ends[chunk] && alike(first, last);) ++last;
+    const std::size_t end = ends[chunk];
+    for (std::size_t first = chunk == 0 ? 0 : ends[chunk - 1], last; first < end; first = last) {
+      // Most are like no other.
+      std::uint64_t key = items[first].key >> shift;
+      for (last = first + 1; last < end; ++last) {
+        const std::uint64_t next = items[last].key >> shift;
+        if (next == key) break;
+        key = next;
+      }
+      first = last - 1;
+      while (last < end && items[last].key >> shift == key) ++last;
       if (last - first <= kFewItems) {
         sort_few(items.subspan(first, last - first));
       } else {

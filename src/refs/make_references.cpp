@@ -24,13 +24,16 @@ Filled fill(const MeshView& mesh, std::size_t begin, std::size_t end, Reference*
   Float4 all_lower = Float4::fill(kInfinity), all_upper = Float4::fill(-kInfinity);
   for (std::size_t i = begin; i < end; ++i) {
     const auto corners = mesh.corners(i);
-    if (std::max({corners[0], corners[1], corners[2]}) >= mesh.vertex_count) {
+    const std::uint32_t largest = std::max({corners[0], corners[1], corners[2]});
+    if (largest >= mesh.vertex_count) {
       filled.bad_index = true;
       return filled;
     }
-    const Float4 a = mesh::load_vertex(mesh, corners[0]), b = mesh::load_vertex(mesh, corners[1]),
-                 c = mesh::load_vertex(mesh, corners[2]);
-    if (!all_within(a, kLargestCoordinate) || !all_within(b, kLargestCoordinate) || !all_within(c, kLargestCoordinate))
+    const mesh::VertexLoader load(mesh, largest);
+    const Float4 a = load(corners[0]), b = load(corners[1]), c = load(corners[2]);
+    // Mostly the sum tells that all are within: it is at least as large as each, and NaN with one that is.
+    if (!all_within(absolute(a) + absolute(b) + absolute(c), kLargestCoordinate) &&
+        !(all_within(a, kLargestCoordinate) && all_within(b, kLargestCoordinate) && all_within(c, kLargestCoordinate)))
       continue;
     const Float4 lower = minimum(minimum(a, b), c), upper = maximum(maximum(a, b), c);
     all_lower = minimum(all_lower, lower);

@@ -175,8 +175,73 @@ ReferenceSides part(const RangeSplit& split, const Reference* source, std::size_
                          : part_with<true>(split, source, count, left, right);
 }
 
+// ---- Morton codes --------------------------------------------------------------------------------------------------
+
+#if HWY_ARCH_X86 && HWY_MAX_BYTES >= 32
+
+/// A lane for each axis, the fourth of which is zero.
+class Coder {
+ public:
+  HWY_INLINE explicit Coder(const MortonGrid& grid) {
+    alignas(32) const double lower[] = {grid.lower(0), grid.lower(1), grid.lower(2), 0},
+                             scale[] = {grid.scale(0), grid.scale(1), grid.scale(2), 0};
+    alignas(32) constexpr std::uint64_t kPlaces[] = {2, 1, 0, 0};
+    lower_ = hn::Load(Doubles(), lower);
+    scale_ = hn::Load(Doubles(), scale);
+    last_cell_ = hn::Set(Doubles(), grid.last_cell());
+    places_ = hn::Load(Words(), kPlaces);
+  }
+  HWY_INLINE std::uint64_t code(const Reference& reference) const {
+    const Float4 centroid = centroid2(Box4::of(reference), xyz_mask());
+    const auto position =
+        hn::Mul(hn::Sub(hn::PromoteTo(Doubles(), hn::Vec<hn::FixedTag<float, 4>>{centroid.v}), lower_), scale_);
+    const auto inside = hn::Min(hn::Max(position, hn::Zero(Doubles())), last_cell_);
+    const auto cell = hn::DemoteTo(hn::FixedTag<std::int32_t, 4>(), inside);
+    auto x = hn::PromoteTo(Words(), hn::BitCast(hn::FixedTag<std::uint32_t, 4>(), cell));
+    x = spread<32>(x, 0x001f00000000ffff);  // as spread_bits
+    x = spread<16>(x, 0x001f0000ff0000ff);
+    x = spread<8>(x, 0x100f00f00f00f00f);
+    x = spread<4>(x, 0x10c30c30c30c30c3);
+    x = spread<2>(x, 0x1249249249249249);
+    x = hn::Shl(x, places_);
+    const hn::FixedTag<std::uint64_t, 2> half;
+    const auto both = hn::Or(hn::LowerHalf(half, x), hn::UpperHalf(half, x));
+    return hn::GetLane(both) | hn::ExtractLane(both, 1);
+  }
+
+ private:
+  using Doubles = hn::FixedTag<double, 4>;
+  using Words = hn::FixedTag<std::uint64_t, 4>;
+  template <int kBits>
+  static HWY_INLINE hn::Vec<Words> spread(hn::Vec<Words> x, std::uint64_t mask) {
+    return hn::And(hn::Or(x, hn::ShiftLeft<kBits>(x)), hn::Set(Words(), mask));
+  }
+  hn::Vec<Doubles> lower_, scale_, last_cell_;
+  hn::Vec<Words> places_;
+};
+
+#else
+
+class Coder {
+ public:
+  explicit Coder(const MortonGrid& grid) : grid_(grid) {}
+  std::uint64_t code(const Reference& reference) const { return grid_.code(reference.centroid2()); }
+
+ private:
+  MortonGrid grid_;
+};
+
+#endif
+
+void morton_codes(const MortonGrid& grid, const Reference* references, std::size_t begin, std::size_t end,
+                  KeyedIndex* codes) {
+  const Coder coder(grid);
+  for (std::size_t r = begin; r < end; ++r)
+    codes[r - begin] = {coder.code(references[r]), static_cast<std::uint32_t>(r), 0};
+}
+
 ReferenceKernels kernels() {
-  return {hwy::TargetName(HWY_TARGET), bin, best_split, part};
+  return {hwy::TargetName(HWY_TARGET), bin, best_split, part, morton_codes};
 }
 
 }  // namespace boxwood::builders::HWY_NAMESPACE

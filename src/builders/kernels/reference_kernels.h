@@ -1,4 +1,4 @@
-// The loops over references and bins that top-down builds spend most of their time in, for the instruction set at hand.
+// The loops over references and bins that builds spend most of their time in, for the instruction set at hand.
 // What they give does not depend on it, to the bit.
 #pragma once
 
@@ -6,6 +6,8 @@
 
 #include "builders/parts/bins.h"
 #include "builders/parts/reference_ranges.h"
+#include "math/morton.h"
+#include "parallel/radix_sort.h"
 
 namespace boxwood::builders {
 
@@ -22,6 +24,10 @@ struct ReferenceKernels {
   /// With `split.has_boxes` the bounds of the sides are left empty.
   ReferenceSides (*part)(const RangeSplit& split, const refs::Reference* source, std::size_t count,
                          refs::Reference* left, refs::Reference* right);
+
+  /// codes[i] become the Morton code of reference `begin` + i's doubled centroid, that number, and 0.
+  void (*morton_codes)(const MortonGrid& grid, const refs::Reference* references, std::size_t begin, std::size_t end,
+                       KeyedIndex* codes);
 };
 
 /// Those for the best instruction set.

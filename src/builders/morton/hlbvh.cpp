@@ -2,6 +2,8 @@
 // references that share the first bits of their Morton codes become treelets, made like an LBVH; the surface area
 // heuristic divides the treelets. Differs from PBRT's version in its 63-bit codes, its leaves (parts/emit_morton.cpp),
 // the default size of the treelets and how they are divided (parts/emit_treelets.cpp). O(n log n), deterministic.
+#include <algorithm>
+
 #include "builders/builder_list.h"
 #include "builders/parts/bins.h"
 #include "builders/parts/build_monitor.h"
@@ -38,15 +40,19 @@ constexpr OptionSpec kOptions[] = {
     kMergeGrowthOption,
     kMergeLeastOption};
 
-/// Ranges of equal first bits.
+/// Ranges of equal first bits. Their ends are searched for in strides that double, then by bisection.
 LargeVector<MortonRange> treelet_ranges(std::span<const KeyedIndex> order, int shift) {
   LargeVector<MortonRange> ranges;
-  std::uint32_t first = 0;
-  const auto count = std::uint32_t(order.size());
-  for (std::uint32_t i = 1; i <= count; ++i) {
-    if (i < count && order[i].key >> shift == order[first].key >> shift) continue;
-    ranges.push_back({first, i});
-    first = i;
+  const std::size_t count = order.size();
+  for (std::size_t first = 0, last; first < count; first = last) {
+    const std::uint64_t bits = order[first].key >> shift;
+    std::size_t stride = 1;
+    while (stride < count - first && order[first + stride].key >> shift == bits) stride *= 2;
+    const auto stretch = order.subspan(first + stride / 2, std::min(count, first + stride) - (first + stride / 2));
+    last = std::size_t(std::partition_point(stretch.begin(), stretch.end(),
+                                            [&](const KeyedIndex& i) { return i.key >> shift == bits; }) -
+                       order.begin());
+    ranges.push_back({std::uint32_t(first), std::uint32_t(last)});
   }
   return ranges;
 }

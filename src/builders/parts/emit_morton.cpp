@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
 
 #include "builders/parts/box4.h"
 
@@ -55,13 +56,12 @@ struct MortonEmitter::Subtree {
 
   void store(tree::Node& node) const {
     box.lower.store_anywhere(&node.bounds.lower.x);
-    alignas(16) float upper[4];
-    box.upper.store(upper);
-    node.bounds.upper = {upper[0], upper[1], upper[2]};
+    box.upper.store_anywhere(reinterpret_cast<float*>(&node) + 3);  // and over `first`
     node.first = first;
     node.count = count;
   }
 };
+static_assert(offsetof(tree::Node, first) == 24);
 
 /// Makes the subtree of one small range.
 struct MortonEmitter::Writer {
@@ -82,12 +82,15 @@ struct MortonEmitter::Writer {
         pairs(2 * std::size_t{references_at_most}),
         next(2 * references_at_most) {}
 
-  Subtree leaf(std::uint32_t position) const {
+  void make_leaf(std::uint32_t position, Subtree& leaf) const {
     const refs::Reference& reference = references[order[position].index];
     primitives[position] = reference.primitive;
-    Box4 box = Box4::of(reference);
-    box.lower = box.lower & mask;
-    return {box, area(box) * intersection, position, 1, 0};
+    leaf.box = Box4::of(reference);
+    leaf.box.lower = leaf.box.lower & mask;
+    leaf.cost = area(leaf.box) * intersection;
+    leaf.first = position;
+    leaf.count = 1;
+    leaf.inner = 0;
   }
 
   /// The leaf over the positions from `first` on, if it is no dearer than its subtree.
@@ -111,48 +114,50 @@ struct MortonEmitter::Writer {
     return whole;
   }
 
-  /// The parent of two subtrees over [first, last), the ones made last.
-  Subtree finish(std::uint32_t first, std::uint32_t last, const Subtree& left, const Subtree& right) {
+  /// `right` becomes the parent of two subtrees over [first, last), the ones made last.
+  void finish(std::uint32_t first, std::uint32_t last, const Subtree& left, Subtree& right) {
     Subtree whole = over(left, right);
     if (becomes_leaf(first, last - first, whole)) {
       next += 2 * (left.inner + right.inner);
-      return whole;
+    } else {
+      next -= 2;
+      left.store(pairs[next]);
+      right.store(pairs[next + 1]);
+      whole.first = next;
     }
-    next -= 2;
-    left.store(pairs[next]);
-    right.store(pairs[next + 1]);
-    whole.first = next;
-    return whole;
+    right = whole;
   }
 
   /// A range of equal codes, halved and halved again: some twelve levels at most.
-  Subtree make_equal(MortonRange range) {
-    if (range.size() == 1) return leaf(range.first);
+  void make_equal(MortonRange range, Subtree& whole) {
+    if (range.size() == 1) return make_leaf(range.first, whole);
     const std::uint32_t middle = range.first + range.size() / 2;
-    const Subtree right = make_equal({middle, range.last});
-    return finish(range.first, range.last, make_equal({range.first, middle}), right);
+    make_equal({middle, range.last}, whole);
+    Subtree left;
+    make_equal({range.first, middle}, left);
+    finish(range.first, range.last, left, whole);
   }
 
   /// From right to left: where codes differ in a lower bit than the ones before do, what lies on the two sides of that
   /// place belongs together. That is the tree that division from the top makes, without a search for each place.
-  Subtree make(MortonRange whole) {
+  const Subtree& make(MortonRange whole) {
     const auto differs_lower = [](std::uint64_t a, std::uint64_t b) { return a < b && a < (a ^ b); };
-    std::size_t top = 0;
-    Subtree subtree;
+    Waiting* top = waiting.data();  // being made; those below it wait
+    std::uint64_t key = order[whole.last - 1].key;
     for (std::uint32_t last = whole.last, first; last > whole.first; last = first) {
-      const std::uint64_t key = order[last - 1].key;
-      for (first = last - 1; first > whole.first && order[first - 1].key == key;) --first;
+      std::uint64_t left_key = ~key;
+      for (first = last - 1; first > whole.first && (left_key = order[first - 1].key) == key;) --first;
       if (first >= whole.first + kAhead) prefetch(&references[order[first - kAhead].index]);
-      subtree = make_equal({first, last});
-      const std::uint64_t step = first > whole.first ? key ^ order[first - 1].key : ~std::uint64_t{0};
-      std::uint32_t end = last;
-      for (; top > 0 && differs_lower(waiting[top - 1].step, step); --top) {
-        end = waiting[top - 1].last;
-        subtree = finish(first, end, subtree, waiting[top - 1].subtree);
-      }
-      waiting[top++] = {subtree, end, step};
+      make_equal({first, last}, top->subtree);
+      top->last = last;
+      const std::uint64_t step = first > whole.first ? key ^ left_key : ~std::uint64_t{0};
+      for (; top != waiting.data() && differs_lower(top[-1].step, step); --top)
+        finish(first, top[-1].last, top->subtree, top[-1].subtree);
+      top->step = step;
+      ++top;
+      key = left_key;
     }
-    return subtree;
+    return waiting[0].subtree;
   }
 
   std::span<const KeyedIndex> order;
@@ -164,7 +169,7 @@ struct MortonEmitter::Writer {
   /// Room for two nodes per reference, of which leaves of several leave most free: so it is small and used again.
   AlignedBuffer<tree::Node> pairs;
   std::uint32_t next = 0;           ///< nodes from here on are made
-  std::array<Waiting, 64> waiting;  ///< each step's highest bit is lower than that of the one below
+  std::array<Waiting, 65> waiting;  ///< each step's highest bit is lower than that of the one below, but the last's
 };
 
 std::uint32_t MortonEmitter::middle(MortonRange range) const {
