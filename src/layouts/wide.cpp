@@ -36,8 +36,8 @@ bool fill_block(TriangleBlock& block, std::span<const std::uint32_t> references,
   for (std::size_t k = 0; k < 3; ++k) {
     Float4 corner[4];
     for (std::size_t lane = 0; lane < 4; ++lane)
-      corner[lane] = lane < references.size() ? load(vertices[lane][k])
-                                              : Float4::fill(std::numeric_limits<float>::quiet_NaN());
+      corner[lane] =
+          lane < references.size() ? load(vertices[lane][k]) : Float4::fill(std::numeric_limits<float>::quiet_NaN());
     auto& [x, y, z, rest] = corner;
     transpose(x, y, z, rest);
     x.store_anywhere(block.corner[k][0]);

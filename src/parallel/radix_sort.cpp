@@ -124,7 +124,7 @@ void radix_sort(AlignedBuffer<KeyedIndex>& items, int bits, Executor& executor) 
   const std::size_t size = items.size();
   if (size < 2) return;
   AlignedBuffer<KeyedIndex> other(size);
-  const std::size_t chunk_size = std::clamp(size / 8, kSmallestChunk, kLargestChunk);
+  const std::size_t chunk_size = std::clamp(size / (executor.threads() == 1 ? 1 : 4), kSmallestChunk, kLargestChunk);
   LargeVector<Counts> chunks((size + chunk_size - 1) / chunk_size);
   const int rest = std::max(0, bits - kLeadingBits);
   sort_digits(items, other, rest, bits, chunks, chunk_size, executor);

@@ -28,9 +28,18 @@ namespace {
 constexpr std::uint32_t kTaskSize = 4096;
 /// References are read in sorted order, so the next ones can be asked for in time.
 constexpr std::uint32_t kAhead = 16;
+/// Differs from codes of 63 bits in a higher one.
+constexpr std::uint64_t kEnd = ~std::uint64_t{0};
 
 double area(const Box4& box) {
   return double(half_area(box.upper - box.lower));
+}
+
+/// How many references cost no more together than a node alone, so that nothing below it can make up for it; by more
+/// than rounding, at least one and at most eight.
+std::uint32_t leaves_for_sure(double traversal, double intersection) {
+  const double sure = traversal / intersection * (1 - 1e-9);
+  return sure >= 8 ? 8 : sure >= 1 ? std::uint32_t(sure) : 1;
 }
 
 Box4 merge(const Box4& a, const Box4& b) {
@@ -78,18 +87,24 @@ struct MortonEmitter::Writer {
         largest_leaf(emitter.leaves_.largest == 0 ? ~std::uint32_t{0} : emitter.leaves_.largest),
         traversal(double(emitter.leaves_.cost.traversal)),
         intersection(double(emitter.leaves_.cost.intersection)),
+        sure_leaf(std::min(largest_leaf, leaves_for_sure(traversal, intersection))),
         primitives(emitter.primitives_.data()),
         pairs(2 * std::size_t{references_at_most}),
         next(2 * references_at_most) {}
 
-  void make_leaf(std::uint32_t position, Subtree& leaf) const {
-    const refs::Reference& reference = references[order[position].index];
-    primitives[position] = reference.primitive;
-    leaf.box = Box4::of(reference);
+  /// The leaf over a range.
+  void make_leaf(MortonRange range, Subtree& leaf) const {
+    leaf.box = Box4::empty();
+    for (std::uint32_t position = range.first; position < range.last; ++position) {
+      const refs::Reference& reference = references[order[position].index];
+      prefetch(&references[order[std::max(position, kAhead) - kAhead].index]);
+      primitives[position] = reference.primitive;
+      leaf.box = merge(leaf.box, Box4::of(reference));
+    }
     leaf.box.lower = leaf.box.lower & mask;
-    leaf.cost = area(leaf.box) * intersection;
-    leaf.first = position;
-    leaf.count = 1;
+    leaf.cost = area(leaf.box) * intersection * double(range.size());
+    leaf.first = range.first;
+    leaf.count = range.size();
     leaf.inner = 0;
   }
 
@@ -130,7 +145,7 @@ struct MortonEmitter::Writer {
 
   /// A range of equal codes, halved and halved again: some twelve levels at most.
   void make_equal(MortonRange range, Subtree& whole) {
-    if (range.size() == 1) return make_leaf(range.first, whole);
+    if (range.size() <= sure_leaf) return make_leaf(range, whole);
     const std::uint32_t middle = range.first + range.size() / 2;
     make_equal({middle, range.last}, whole);
     Subtree left;
@@ -138,24 +153,45 @@ struct MortonEmitter::Writer {
     finish(range.first, range.last, left, whole);
   }
 
+  /// The first position of the largest subtree within `whole` that ends at `last` and is a leaf for sure; `last` if
+  /// there is none, because too many codes are equal. `step`: the bits in which the codes before and at `last` differ.
+  /// All candidates are looked at, since which one it will be is hard to foresee.
+  std::uint32_t find_leaf(MortonRange whole, std::uint32_t last, std::uint64_t step) const {
+    const auto differs_higher = [](std::uint64_t bits, std::uint64_t than) { return (bits & ~than) > than; };
+    std::uint32_t sizes = 1;                              // a bit for each that is possible
+    std::uint64_t inside = 0, key = order[last - 1].key;  // bits in which codes of the candidate differ
+    const std::uint32_t most = std::min(sure_leaf + 1, last - whole.first);
+    for (std::uint32_t size = 1; size < most; ++size) {
+      const std::uint64_t left = order[last - size - 1].key, left_step = key ^ left;
+      sizes |= std::uint32_t(differs_higher(left_step, inside) & differs_higher(step, inside)) << size;
+      inside |= left_step;
+      key = left;
+    }
+    if (most <= sure_leaf) sizes |= std::uint32_t(differs_higher(step, inside)) << most;  // all that is left
+    return last + 1 - std::uint32_t(std::bit_width(sizes));
+  }
+
   /// From right to left: where codes differ in a lower bit than the ones before do, what lies on the two sides of that
   /// place belongs together. That is the tree that division from the top makes, without a search for each place.
   const Subtree& make(MortonRange whole) {
     const auto differs_lower = [](std::uint64_t a, std::uint64_t b) { return a < b && a < (a ^ b); };
     Waiting* top = waiting.data();  // being made; those below it wait
-    std::uint64_t key = order[whole.last - 1].key;
+    std::uint64_t step = kEnd;
     for (std::uint32_t last = whole.last, first; last > whole.first; last = first) {
-      std::uint64_t left_key = ~key;
-      for (first = last - 1; first > whole.first && (left_key = order[first - 1].key) == key;) --first;
-      if (first >= whole.first + kAhead) prefetch(&references[order[first - kAhead].index]);
-      make_equal({first, last}, top->subtree);
+      first = find_leaf(whole, last, step);
+      if (first < last) {
+        make_leaf({first, last}, top->subtree);
+      } else {
+        const std::uint64_t key = order[last - 1].key;
+        for (first = last - 1; first > whole.first && order[first - 1].key == key;) --first;
+        make_equal({first, last}, top->subtree);
+      }
       top->last = last;
-      const std::uint64_t step = first > whole.first ? key ^ left_key : ~std::uint64_t{0};
+      step = first > whole.first ? order[first].key ^ order[first - 1].key : kEnd;
       for (; top != waiting.data() && differs_lower(top[-1].step, step); --top)
         finish(first, top[-1].last, top->subtree, top[-1].subtree);
       top->step = step;
       ++top;
-      key = left_key;
     }
     return waiting[0].subtree;
   }
@@ -164,6 +200,7 @@ struct MortonEmitter::Writer {
   std::span<const refs::Reference> references;
   std::uint32_t largest_leaf;
   double traversal, intersection;
+  std::uint32_t sure_leaf;  ///< so many references are a leaf whatever their boxes; at least one
   std::uint32_t* primitives;
   Float4 mask = xyz_mask();
   /// Room for two nodes per reference, of which leaves of several leave most free: so it is small and used again.
