@@ -77,18 +77,18 @@ class KeptBlocks {
   /// old ones, a build that takes more than is kept would drive out each block just before it is wanted.
   void keep(void* block, std::size_t size, std::size_t alignment, std::size_t most) noexcept {
     if (size > most) return Kept{block, size, alignment}.give_back();
-    std::uint64_t release = 0;
+    std::uint64_t released = 0;
     for (bool displaces = true; displaces;) {
       Kept displaced;
       {
         const std::lock_guard lock(mutex_);
-        if (release == 0) release = ++releases_;
+        if (released == 0) released = released_ += size;
         if (blocks_.size() < kMostBlocks && bytes_ + size <= most) {
-          blocks_.push_back({block, size, alignment, release});
+          blocks_.push_back({block, size, alignment, released});
           bytes_ += size;
           return;
         }
-        displaces = release > blocks_.front().released + kStale;  // a list without room is not empty
+        displaces = released > blocks_.front().released + kStale * most;  // a list without room is not empty
         displaced = displaces ? take_oldest() : Kept{block, size, alignment};
       }
       displaced.give_back();  // without the lock: it can take long
@@ -108,13 +108,14 @@ class KeptBlocks {
   }
 
  private:
-  static constexpr std::size_t kMostBlocks = 256;
-  /// Releases after which a block that was not taken again need not be kept: those of a few builds.
-  static constexpr std::uint64_t kStale = 256;
+  static constexpr std::size_t kMostBlocks = 1024;
+  /// A block that was not taken again while so many times as much as is kept was released need not be kept: a few
+  /// builds, or many small ones.
+  static constexpr std::uint64_t kStale = 4;
   struct Kept {
     void* block = nullptr;
     std::size_t size = 0, alignment = 1;
-    std::uint64_t released = 0;  ///< the number of its release
+    std::uint64_t released = 0;  ///< bytes released up to its own release
 
     void give_back() const noexcept {
       if (block) ::operator delete(block, std::align_val_t(alignment));
@@ -134,7 +135,7 @@ class KeptBlocks {
     return blocks;
   }();
   std::size_t bytes_ = 0;
-  std::uint64_t releases_ = 0;
+  std::uint64_t released_ = 0;  ///< bytes, by all releases
 };
 
 /// Lives as long as the process, for buffers that static objects own.
