@@ -157,17 +157,19 @@ struct MortonEmitter::Writer {
   /// there is none, because too many codes are equal. `step`: the bits in which the codes before and at `last` differ.
   /// All candidates are looked at, since which one it will be is hard to foresee.
   std::uint32_t find_leaf(MortonRange whole, std::uint32_t last, std::uint64_t step) const {
-    const auto differs_higher = [](std::uint64_t bits, std::uint64_t than) { return (bits & ~than) > than; };
+    const auto differs_higher = [](std::uint64_t bits, std::uint64_t than) {
+      return std::uint32_t{(bits & ~than) > than};
+    };
     std::uint32_t sizes = 1;                              // a bit for each that is possible
     std::uint64_t inside = 0, key = order[last - 1].key;  // bits in which codes of the candidate differ
     const std::uint32_t most = std::min(sure_leaf + 1, last - whole.first);
     for (std::uint32_t size = 1; size < most; ++size) {
       const std::uint64_t left = order[last - size - 1].key, left_step = key ^ left;
-      sizes |= std::uint32_t(differs_higher(left_step, inside) & differs_higher(step, inside)) << size;
+      sizes |= (differs_higher(left_step, inside) & differs_higher(step, inside)) << size;
       inside |= left_step;
       key = left;
     }
-    if (most <= sure_leaf) sizes |= std::uint32_t(differs_higher(step, inside)) << most;  // all that is left
+    if (most <= sure_leaf) sizes |= differs_higher(step, inside) << most;  // all that is left
     return last + 1 - std::uint32_t(std::bit_width(sizes));
   }
 

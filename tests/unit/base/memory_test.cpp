@@ -91,6 +91,22 @@ TEST(Memory, WhatIsKeptStaysWhenMoreIsGivenBack) {
   memory::give_back_unused();
 }
 
+TEST(Memory, ManySmallBlocksDriveOutNoLargeOne) {
+  if (test::kInstrumented) GTEST_SKIP() << "a sanitizer must see every release";
+  memory::give_back_unused();
+  for (int build = 0; build < 3; ++build) {  // a build's large array, then hundreds of small ones
+    auto* const large = static_cast<std::uint8_t*>(memory::allocate(20 * kMiB, 64));
+    if (build > 0) {
+      EXPECT_EQ(large[7 * kMiB], 77) << "not fresh from the system, which would have cleared it";
+    }
+    large[7 * kMiB] = 77;
+    memory::release(large, 20 * kMiB, 64);
+    std::vector<AlignedBuffer<std::uint8_t>> pieces;
+    for (int i = 0; i < 600; ++i) pieces.emplace_back(kMiB / 16 + 4096 * std::size_t(i % 8));
+  }
+  memory::give_back_unused();
+}
+
 TEST(Memory, ServesSeveralThreads) {
   std::vector<std::thread> threads;
   std::vector<int> wrong(4);

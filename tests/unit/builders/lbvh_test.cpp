@@ -2,7 +2,9 @@
 #include <tbb/global_control.h>
 
 #include <atomic>
+#include <bit>
 
+#include "builders/parts/morton_order.h"
 #include "unit/builders/morton_builder_cases.h"
 
 namespace boxwood {
@@ -89,6 +91,80 @@ TEST(Lbvh, leaves_are_made_where_they_are_no_dearer) {
   EXPECT_EQ(dear_nodes.nodes.size(), 1u) << "no limit and no node worth its price: one leaf";
   const auto cheap_nodes = build_valid(boxes, "lbvh", {{"cost.traversal", "0"}, {"cost.intersection", "1000"}});
   EXPECT_LT(tree::statistics(cheap_nodes).average_leaf, 1.5);
+}
+
+/// The tree by its definition: divided from the top at the highest bit, a leaf where that is no dearer.
+class PlainRadixTree {
+ public:
+  PlainRadixTree(const refs::ReferenceSet& set, int bits_per_axis, std::size_t largest, tree::CostModel cost)
+      : set_(set), largest_(largest), cost_(cost) {
+    SequentialExecutor executor;
+    order_ = builders::morton_order(set.references.span(), bits_per_axis, executor);
+  }
+
+  /// Nodes that are not as they must be.
+  int differences(const tree::BinaryTree& tree) { return compare(tree, 0, make(0, order_.size())); }
+
+ private:
+  struct Made {
+    Box box;
+    double price;
+    std::size_t first, last;
+    std::vector<Made> children;
+  };
+  Made make(std::size_t first, std::size_t last) {
+    Made made{{}, 0, first, last, {}};
+    const double traversal = double(cost_.traversal), intersection = double(cost_.intersection);
+    for (std::size_t i = first; i < last; ++i) made.box.grow(set_.references[order_[i].index].box());
+    const double area = double(made.box.half_area()), leaf_price = area * intersection * double(last - first);
+    made.price = leaf_price;
+    if (last - first == 1) return made;
+    std::size_t middle = first + (last - first) / 2;
+    if (const std::uint64_t bits = order_[first].key ^ order_[last - 1].key; bits != 0)
+      for (middle = first; !(order_[middle].key & std::bit_floor(bits));) ++middle;
+    Made left = make(first, middle), right = make(middle, last);
+    const double price = area * traversal + left.price + right.price;
+    if ((largest_ == 0 || last - first <= largest_) && leaf_price <= price) return made;
+    made.price = price;
+    made.children.push_back(std::move(left)), made.children.push_back(std::move(right));
+    return made;
+  }
+  int compare(const tree::BinaryTree& tree, std::uint32_t n, const Made& made) {
+    const tree::Node& node = tree.nodes[n];
+    int wrong = !(node.bounds == made.box) + (node.is_leaf() != made.children.empty());
+    if (wrong) return wrong;
+    if (!node.is_leaf())
+      return compare(tree, node.first, made.children[0]) + compare(tree, node.first + 1, made.children[1]);
+    if (node.first != made.first || node.count != made.last - made.first) return 1;
+    for (std::size_t i = made.first; i < made.last; ++i)
+      wrong += tree.references[i] != set_.references[order_[i].index].primitive;
+    return wrong;
+  }
+
+  const refs::ReferenceSet& set_;
+  AlignedBuffer<KeyedIndex> order_;
+  std::size_t largest_;
+  tree::CostModel cost_;
+};
+
+TEST(Lbvh, is_the_tree_of_its_definition) {
+  auto sets = difficult_sets();
+  sets["scan"] = scan_boxes(40);
+  // Crowds of up to forty equal codes among others.
+  for (const Box& box : random_boxes(300, 8))
+    sets["crowds"].insert(sets["crowds"].end(), 1 + sets["crowds"].size() % 41, box);
+  for (const auto& [name, boxes] : sets)
+    for (const int bits : {63, 30})
+      for (const char* leaf_max : {"0", "1", "3", "16"})
+        for (const char* intersection : {"0.01", "0.15", "0.25", "0.5", "1", "3"}) {
+          const auto set = reference_set(boxes);
+          const auto tree = build_valid(
+              boxes, "lbvh",
+              {{"bits", std::to_string(bits)}, {"leaf.max", leaf_max}, {"cost.intersection", intersection}});
+          PlainRadixTree plain(set, bits / 3, std::stoul(leaf_max), {1, std::stof(intersection)});
+          ASSERT_EQ(plain.differences(tree), 0)
+              << name << ", bits " << bits << ", leaf.max " << leaf_max << ", intersection " << intersection;
+        }
 }
 
 TEST(Lbvh, same_bits_on_every_executor) {

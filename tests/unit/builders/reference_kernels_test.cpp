@@ -112,5 +112,27 @@ TEST_P(ReferenceKernelsTest, PartTheSameWay) {
     }
 }
 
+TEST(MortonCodes, AreThoseOfTheGridOnEveryInstructionSet) {
+  auto boxes = boxes_of(1001, 7);
+  boxes.push_back({{-1e18f, -1e18f, -1e18f}, {1e18f, 1e18f, -1e18f}});
+  boxes.push_back({{1e-42f, -1e-42f, 0}, {3e-42f, 1e-42f, 1e-44f}});
+  const auto set = testing::reference_set(boxes);
+  for (const Box& grid_box : {Box{{-2, -2, -2}, {2, 2, 2}}, Box{{-2e18f, -2e18f, -2e18f}, {2e18f, 2e18f, 2e18f}},
+                              Box{{0, 0, 0}, {1, 0, 1e-42f}}})
+    for (const int bits : {1, 10, 21}) {
+      const MortonGrid grid(grid_box, bits);
+      for (const ReferenceKernels& kernels : all_reference_kernels()) {
+        std::vector<KeyedIndex> codes(boxes.size() - 2, KeyedIndex{1, 1, 1});
+        kernels.morton_codes(grid, set.references.data(), 2, boxes.size(), codes.data());
+        for (std::size_t i = 0; i < codes.size(); ++i) {
+          ASSERT_EQ(codes[i].key, grid.code(set.references[i + 2].centroid2()))
+              << kernels.name << " " << bits << " " << i;
+          ASSERT_EQ(codes[i].index, i + 2);
+          ASSERT_EQ(codes[i].other, 0u);
+        }
+      }
+    }
+}
+
 }  // namespace
 }  // namespace boxwood::builders
