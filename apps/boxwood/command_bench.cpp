@@ -59,7 +59,7 @@ void add_bench_command(CLI::App& program, Run& run) {
       ->check(CLI::IsMember({"full", "summary"}))
       ->capture_default_str();
   add_list(command, "--traversals", options->traversals,
-           "single (the default), batch; coherent, interleaved, sorted for wide8 and wide8-quads; "
+           "single (the default), batch; coherent, interleaved, sorted for wide8, wide8-quads and wide16; "
            "packet4, range, partition for linear");
   command.add_option("--packet-size", options->packet_size, "Rays in a packet of range and partition, 16 to 1024")
       ->type_name("N")

@@ -41,7 +41,7 @@ const char* name(Mode mode);
 /// packet keeps the numbers of its active rays in front. Only the layout `linear` has these three packets.
 /// `batch`, the default of calls with many rays, picks for each tile of rays: coherent packets, many rays in flight or
 /// single rays; on the layouts `linear` and `wide4` it is `single`. The other three force one way, and need the layout
-/// `wide8` or `wide8-quads`: `coherent`: packets of 64 rays, inner nodes tested once for the beam that encloses them;
+/// `wide8`, `wide8-quads` or `wide16`: `coherent`: packets of 64 rays, inner nodes tested once for the beam that encloses them;
 /// `interleaved`: many rays in flight, in phases; `sorted`: the same after sorting blocks of rays by octant, origin and
 /// direction. See docs/batches.md. All give the same hits.
 enum class Traversal { single, packet4, range, partition, batch, coherent, interleaved, sorted };
@@ -79,8 +79,8 @@ std::vector<std::string> supported_isas();
 /// the best one. Errors: a name that is unknown or that this processor can't run.
 Result<std::string> choose_isa(std::string_view name = {});
 
-/// The layout that is fastest with an instruction set (empty: the one choose_isa takes): wide16 with AVX-512, else
-/// wide8 (docs/layouts.md).
+/// The layout that is fastest with an instruction set (empty: the one choose_isa takes): wide16 with SSE4, AVX2 and
+/// AVX-512, else wide8 (docs/layouts.md).
 const char* default_layout(std::string_view isa = {});
 
 /// The kernels of one layout, mode and instruction set. All take arrays of rays of any length and walk them one by

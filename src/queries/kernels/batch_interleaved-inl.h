@@ -28,9 +28,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace boxwood::queries::HWY_NAMESPACE {
 
-/// A node's children are sorted in one vector.
+/// The children of a node that are hit are sorted in one vector, of eight lanes at least.
 template <int W>
-inline constexpr bool kInterleaves = (W == 8 || W == 16) && HWY_MAX_BYTES >= 4 * W;
+inline constexpr bool kInterleaves = (W == 8 || W == 16) && HWY_MAX_BYTES >= 32;
 
 #if HWY_MAX_BYTES >= 32
 /// For each set of lanes its members, the last one first.
@@ -210,23 +210,55 @@ class Interleaved {
   }
 
   HWY_INLINE void visit_node(std::uint32_t slot) {
-    using Tag = hn::CappedTag<float, W>;
-    const Tag d;
-    const hn::RebindToSigned<Tag> di;
-    const hn::RebindToUnsigned<Tag> du;
+    if constexpr (W == hn::MaxLanes(Floats()))
+      visit_whole(slot);
+    else
+      visit_halves(slot);
+  }
+
+  using Floats = hn::CappedTag<float, W>;
+  using Signed = hn::RebindToSigned<Floats>;
+  using Unsigned = hn::RebindToUnsigned<Floats>;
+
+  /// Where the ray enters children from `first` on, and which of them it meets.
+  HWY_INLINE hn::Mask<Floats> test(const WideNode<W>& node, int first, std::uint32_t slot,
+                                   hn::Vec<Floats>& near) const {
+    const Floats d;
     const RaySetup& ray = flights_[slot].setup;
-    const WideNode<W>& node = nodes_[word_[slot]];
     const auto entry = [&](int axis) HWY_ATTR {
-      return hn::MulAdd(hn::Load(d, node.planes[ray.entry_plane[axis]]), hn::Set(d, ray.reciprocal[axis]),
+      return hn::MulAdd(hn::Load(d, node.planes[ray.entry_plane[axis]] + first), hn::Set(d, ray.reciprocal[axis]),
                         hn::Set(d, ray.entry_add[axis]));
     };
     const auto exit = [&](int axis) HWY_ATTR {
-      return hn::MulAdd(hn::Load(d, node.planes[ray.exit_plane[axis]]), hn::Set(d, ray.reciprocal[axis]),
+      return hn::MulAdd(hn::Load(d, node.planes[ray.exit_plane[axis]] + first), hn::Set(d, ray.reciprocal[axis]),
                         hn::Set(d, ray.exit_add[axis]));
     };
-    const auto near = hn::Max(hn::Max(entry(0), entry(1)), hn::Max(entry(2), hn::Set(d, ray.tmin)));
-    const auto far = hn::Min(hn::Min(exit(0), exit(1)), hn::Min(exit(2), hn::Set(d, flights_[slot].best.t)));
-    const auto hit = hn::Le(near, far);
+    near = hn::Max(hn::Max(entry(0), entry(1)), hn::Max(entry(2), hn::Set(d, ray.tmin)));
+    return hn::Le(near, hn::Min(hn::Min(exit(0), exit(1)), hn::Min(exit(2), hn::Set(d, flights_[slot].best.t))));
+  }
+
+  /// Entry distances with the lanes' numbers in their lowest bits.
+  static HWY_INLINE hn::Vec<Signed> keys_of(hn::Vec<Floats> near, int first) {
+    const Signed di;
+    return hn::Or(hn::AndNot(hn::Set(di, W - 1), hn::BitCast(di, near)), hn::Iota(di, first));
+  }
+
+  /// Those of up to eight lanes that `bits` names, the last one first.
+  template <class V>
+  static HWY_INLINE V backwards(V v, std::uint64_t bits) {
+    const hn::RebindToUnsigned<hn::DFromV<V>> du;
+    const hn::Rebind<std::uint8_t, decltype(du)> bytes;
+    const auto lanes = hn::PromoteTo(du, hn::Load(bytes, kBackwards[bits].data()));
+    return hn::TableLookupLanes(v, hn::IndicesFromVec(hn::DFromV<V>(), lanes));
+  }
+
+  HWY_INLINE void visit_whole(std::uint32_t slot) {
+    const Floats d;
+    const Signed di;
+    const Unsigned du;
+    const WideNode<W>& node = nodes_[word_[slot]];
+    auto near = hn::Zero(d);
+    const auto hit = test(node, 0, slot, near);
     const auto children = hn::Load(du, node.child);
     std::uint32_t* const words = words_[slot] + top_[slot];
     if constexpr (kAny && W == 16) {
@@ -235,19 +267,20 @@ class Interleaved {
       top_[slot] += static_cast<std::uint32_t>(hn::CountTrue(d, hit));
     } else if constexpr (kAny) {
       const std::uint64_t bits = mask_bits(d, hit);
-      const hn::Rebind<std::uint8_t, decltype(du)> bytes;
-      const auto lanes = hn::PromoteTo(du, hn::Load(bytes, kBackwards[bits].data()));
-      hn::StoreU(hn::TableLookupLanes(children, hn::IndicesFromVec(du, lanes)), du, words);
+      hn::StoreU(backwards(children, bits), du, words);
       top_[slot] += static_cast<std::uint32_t>(std::popcount(bits));
     } else {
-      const auto lanes = hn::Iota(di, 0), low_bits = hn::Set(di, W - 1);
-      const auto keys = hn::Or(hn::AndNot(low_bits, hn::BitCast(di, near)), lanes);
+      const auto low_bits = hn::Set(di, W - 1);
+      const auto keys = keys_of(near, 0);
       if constexpr (W == 16) {
         const std::size_t count = hn::CountTrue(d, hit);
+        const auto lookup = [&](auto lanes) HWY_ATTR {
+          return hn::TableLookupLanes(children, hn::IndicesFromVec(du, as_lanes_of<16>(lanes)));
+        };
         if (HWY_LIKELY(count <= 4))
-          return push_few<4>(hn::Compress(keys, hn::RebindMask(di, hit)), children, slot, count);
+          return push_few<4>(hn::Compress(keys, hn::RebindMask(di, hit)), lookup, slot, count);
         if (HWY_LIKELY(count <= 8))
-          return push_few<8>(hn::Compress(keys, hn::RebindMask(di, hit)), children, slot, count);
+          return push_few<8>(hn::Compress(keys, hn::RebindMask(di, hit)), lookup, slot, count);
       }
       const auto sorted = sort_descending(hn::IfThenElse(hn::RebindMask(di, hit), keys, hn::Set(di, -1)));
       hn::StoreU(hn::TableLookupLanes(children, hn::IndicesFromVec(du, hn::BitCast(du, hn::And(sorted, low_bits)))), du,
@@ -257,21 +290,71 @@ class Interleaved {
     }
   }
 
+  /// Sixteen children in two vectors of eight.
+  HWY_INLINE void visit_halves(std::uint32_t slot) {
+    const Floats d;
+    const Signed di;
+    const Unsigned du;
+    const WideNode<W>& node = nodes_[word_[slot]];
+    auto low_near = hn::Zero(d), high_near = low_near;
+    const std::uint64_t low_bits = mask_bits(d, test(node, 0, slot, low_near));
+    const std::uint64_t high_bits = mask_bits(d, test(node, 8, slot, high_near));
+    const auto low_count = static_cast<std::uint32_t>(std::popcount(low_bits));
+    const auto high_count = static_cast<std::uint32_t>(std::popcount(high_bits));
+    const auto low = hn::Load(du, node.child), high = hn::Load(du, node.child + 8);
+    if constexpr (kAny) {
+      std::uint32_t* const words = words_[slot] + top_[slot];
+      hn::StoreU(backwards(high, high_bits), du, words);
+      hn::StoreU(backwards(low, low_bits), du, words + high_count);
+      top_[slot] += low_count + high_count;
+    } else {
+      const auto low_keys = backwards(keys_of(low_near, 0), low_bits);
+      const auto high_keys = backwards(keys_of(high_near, 8), high_bits);
+      const auto lookup = [&](auto lanes) HWY_ATTR {
+        const auto all = hn::BitCast(di, as_lanes_of<8>(lanes));
+        const auto places = hn::IndicesFromVec(du, hn::BitCast(du, hn::And(all, hn::Set(di, 7))));
+        return hn::IfThenElse(hn::RebindMask(du, hn::Gt(all, hn::Set(di, 7))), hn::TableLookupLanes(high, places),
+                              hn::TableLookupLanes(low, places));
+      };
+      const std::uint32_t count = low_count + high_count;
+      if (HWY_UNLIKELY(count > 8)) return push_many(low_keys, low_count, high_keys, count, node, slot);
+      // The high half's behind the low half's.
+      const auto behind = hn::Sub(hn::Iota(di, 0), hn::Set(di, static_cast<std::int32_t>(low_count)));
+      const auto turn = hn::IndicesFromVec(di, hn::And(behind, hn::Set(di, 7)));
+      const auto keys = hn::IfThenElse(hn::Lt(behind, hn::Zero(di)), low_keys, hn::TableLookupLanes(high_keys, turn));
+      if (HWY_LIKELY(count <= 4))
+        push_few<4>(keys, lookup, slot, count);
+      else
+        push_few<8>(keys, lookup, slot, count);
+    }
+  }
+
   /// Sixteen children of which up to N were hit, whose keys stand first: mostly four at most. Four are sorted in three
   /// layers and eight in six; the ten of sixteen take twice as long each on processors with 256-bit units.
-  template <int N, class VI, class VU>
-  HWY_INLINE void push_few(VI keys, VU children, std::uint32_t slot, std::size_t count) {
-    const hn::DFromV<VU> du;
+  template <int N, class VI, class Lookup>
+  HWY_INLINE void push_few(VI keys, Lookup lookup, std::uint32_t slot, std::size_t count) {
     const hn::CappedTag<std::int32_t, N> di;
-    const hn::RebindToUnsigned<decltype(di)> half;
+    const hn::RebindToUnsigned<decltype(di)> du;
     const hn::RebindToFloat<decltype(di)> d;
     const auto low_bits = hn::Set(di, 15);
     const auto sorted = sort_descending(hn::IfThenElse(hn::FirstN(di, count), first_lanes<N>(keys), hn::Set(di, -1)));
-    const auto lanes = as_lanes_of<16>(hn::BitCast(half, hn::And(sorted, low_bits)));
-    const auto words = hn::TableLookupLanes(children, hn::IndicesFromVec(du, lanes));
-    hn::StoreU(first_lanes<N>(words), half, words_[slot] + top_[slot]);
+    hn::StoreU(first_lanes<N>(lookup(hn::BitCast(du, hn::And(sorted, low_bits)))), du, words_[slot] + top_[slot]);
     hn::StoreU(hn::BitCast(d, hn::AndNot(low_bits, sorted)), d, distances_[slot] + top_[slot]);
     top_[slot] += static_cast<std::uint32_t>(count);
+  }
+
+  /// More than eight, which is rare.
+  HWY_NOINLINE void push_many(hn::Vec<Signed> low_keys, std::uint32_t low_count, hn::Vec<Signed> high_keys,
+                              std::uint32_t count, const WideNode<W>& node, std::uint32_t slot) {
+    const Signed di;
+    std::int32_t keys[W + 8];
+    hn::StoreU(low_keys, di, keys);
+    hn::StoreU(high_keys, di, keys + low_count);
+    std::sort(keys, keys + count, [](std::int32_t a, std::int32_t b) { return a > b; });
+    for (std::uint32_t i = 0; i < count; ++i, ++top_[slot]) {
+      words_[slot][top_[slot]] = node.child[keys[i] & (W - 1)];
+      distances_[slot][top_[slot]] = std::bit_cast<float>(keys[i] & ~(W - 1));
+    }
   }
 
   HWY_INLINE void visit_leaf(std::uint32_t slot) {
