@@ -41,9 +41,9 @@ const char* name(Mode mode);
 /// packet keeps the numbers of its active rays in front. Only the layout `linear` has these three packets.
 /// `batch`, the default of calls with many rays, picks for each tile of rays: coherent packets, many rays in flight or
 /// single rays; on the layouts `linear` and `wide4` it is `single`. The other three force one way, and need the layout
-/// `wide8`, `wide8-quads` or `wide16`: `coherent`: packets of 64 rays, inner nodes tested once for the beam that encloses them;
-/// `interleaved`: many rays in flight, in phases; `sorted`: the same after sorting blocks of rays by octant, origin and
-/// direction. See docs/batches.md. All give the same hits.
+/// `wide8`, `wide8-quads` or `wide16`: `coherent`: packets of 64 rays, inner nodes tested once for the beam that
+/// encloses them; `interleaved`: many rays in flight, in phases; `sorted`: the same after sorting blocks of rays by
+/// octant, origin and direction. See docs/batches.md. All give the same hits.
 enum class Traversal { single, packet4, range, partition, batch, coherent, interleaved, sorted };
 Result<Traversal> find_traversal(std::string_view name);
 const char* name(Traversal traversal);

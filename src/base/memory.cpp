@@ -1,7 +1,7 @@
 // Memory of AlignedBuffer. Blocks of half a megabyte and more ask the system for huge pages: a build touches hundreds
 // of megabytes once, and one page fault for 2 MiB costs little more than one for 4 KiB (on virtual machines less than a
 // hundredth of the 512 that it replaces). Some blocks are kept when they are given back, smaller ones too: unmapping a
-// block interrupts the other threads, and mapping it again clears its pages (docs/performance.md, "What builds spend").
+// block interrupts the other threads, and mapping it again clears its pages (docs/where-time-goes.md).
 #include <algorithm>
 #include <bit>
 #include <iterator>
