@@ -12,7 +12,8 @@
 //
 // Boxes and prices are made on the way back up. Unlike in the papers, where leaves are single references or what is
 // left when the bits end, a range within the limit becomes a leaf where that is no dearer by the surface area
-// heuristic. O(n log n).
+// heuristic. So many references as cost no more together than a node alone are a leaf whatever their boxes: such
+// subtrees are found as a whole, and the tree is made of them. O(n log n).
 #include "builders/parts/emit_morton.h"
 
 #include <algorithm>
