@@ -284,7 +284,7 @@ TEST(Render, SameBitsOnEveryExecutor) {
   const int width = test::kInstrumented ? 96 : 320, height = test::kInstrumented ? 72 : 240;
   for (const Shade shade : kAllShades) {
     const Image reference = picture(build(mesh, std::make_shared<SequentialExecutor>()), view, width, height, shade);
-    EXPECT_GT(colors(reference).size(), test::effort(20, 4));
+    EXPECT_GT(colors(reference).size(), test::kInstrumented ? 2u : 20u) << "something is to be seen";
     for (const int threads : test::thread_counts())
       EXPECT_EQ(picture(build(mesh, std::make_shared<ThreadExecutor>(threads)), view, width, height, shade).rgb,
                 reference.rgb)
