@@ -46,8 +46,8 @@ class BoxTest {
     exit_x_ = hn::Set(d, ray.exit_add[0]), exit_y_ = hn::Set(d, ray.exit_add[1]);
     exit_z_ = hn::Set(d, ray.exit_add[2]);
     for (int axis = 0; axis < 3; ++axis) {
-      entry_row_[axis] = static_cast<std::uint32_t>(ray.entry_plane[axis] * W);
-      exit_row_[axis] = static_cast<std::uint32_t>(ray.exit_plane[axis] * W);
+      entry_row_[axis] = static_cast<Row>(ray.entry_plane[axis]) * kRow;
+      exit_row_[axis] = static_cast<Row>(ray.exit_plane[axis]) * kRow;
     }
   }
 
@@ -59,12 +59,12 @@ class BoxTest {
     const auto limit = hn::Set(d, tmax);
     std::uint32_t hit = 0;
     for (int i = 0; i < W; i += step) {
-      const auto x0 = hn::MulAdd(hn::Load(d, planes + entry_row_[0] + i), rx_, entry_x_);
-      const auto y0 = hn::MulAdd(hn::Load(d, planes + entry_row_[1] + i), ry_, entry_y_);
-      const auto z0 = hn::MulAdd(hn::Load(d, planes + entry_row_[2] + i), rz_, entry_z_);
-      const auto x1 = hn::MulAdd(hn::Load(d, planes + exit_row_[0] + i), rx_, exit_x_);
-      const auto y1 = hn::MulAdd(hn::Load(d, planes + exit_row_[1] + i), ry_, exit_y_);
-      const auto z1 = hn::MulAdd(hn::Load(d, planes + exit_row_[2] + i), rz_, exit_z_);
+      const auto x0 = hn::MulAdd(row(planes, entry_row_[0], i), rx_, entry_x_);
+      const auto y0 = hn::MulAdd(row(planes, entry_row_[1], i), ry_, entry_y_);
+      const auto z0 = hn::MulAdd(row(planes, entry_row_[2], i), rz_, entry_z_);
+      const auto x1 = hn::MulAdd(row(planes, exit_row_[0], i), rx_, exit_x_);
+      const auto y1 = hn::MulAdd(row(planes, exit_row_[1], i), ry_, exit_y_);
+      const auto z1 = hn::MulAdd(row(planes, exit_row_[2], i), rz_, exit_z_);
       const auto near = hn::Max(hn::Max(x0, y0), hn::Max(z0, tmin_));
       const auto far = hn::Min(hn::Min(x1, y1), hn::Min(z1, limit));
       hn::Store(near, d, entry + i);
@@ -76,8 +76,20 @@ class BoxTest {
  private:
   using D = hn::CappedTag<float, W>;
   using V = hn::Vec<D>;
+  /// Where a row takes several vectors its place is in bytes and as wide as an address: then a vector's place in its
+  /// row is part of the load, else gcc makes a number of its own for each and keeps them all on the stack.
+  static constexpr bool kSeveral = hn::MaxLanes(D()) < W;
+  using Row = std::conditional_t<kSeveral, std::size_t, std::uint32_t>;
+  static constexpr Row kRow = kSeveral ? W * sizeof(float) : W;
+  static HWY_INLINE hn::Vec<D> row(const float* planes, Row row, int first) {
+    if constexpr (kSeveral)
+      return hn::Load(D(), reinterpret_cast<const float*>(reinterpret_cast<const char*>(planes) + row) + first);
+    else
+      return hn::Load(D(), planes + row + first);
+  }
+
   V rx_, ry_, rz_, entry_x_, entry_y_, entry_z_, exit_x_, exit_y_, exit_z_, tmin_;
-  std::uint32_t entry_row_[3], exit_row_[3];  // floats from the first plane
+  Row entry_row_[3], exit_row_[3];  // from the first plane
 };
 
 /// A waiting child of a closest-hit query: entry distance in the high half, child word in the low half. Distances are
