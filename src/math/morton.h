@@ -9,14 +9,18 @@
 
 namespace boxwood {
 
+/// Where bits stay when they are spread to every third place, by 32, 16, 8, 4 and 2 places one after the other.
+inline constexpr std::uint64_t kSpreadMasks[] = {0x001f00000000ffff, 0x001f0000ff0000ff, 0x100f00f00f00f00f,
+                                                 0x10c30c30c30c30c3, 0x1249249249249249};
+
 /// Bits of `v` (its lowest 21) spread out to every third place.
 constexpr std::uint64_t spread_bits(std::uint32_t v) {
   std::uint64_t x = v & 0x1fffff;
-  x = (x | x << 32) & 0x001f00000000ffff;
-  x = (x | x << 16) & 0x001f0000ff0000ff;
-  x = (x | x << 8) & 0x100f00f00f00f00f;
-  x = (x | x << 4) & 0x10c30c30c30c30c3;
-  x = (x | x << 2) & 0x1249249249249249;
+  int places = 32;
+  for (const std::uint64_t mask : kSpreadMasks) {
+    x = (x | x << places) & mask;
+    places /= 2;
+  }
   return x;
 }
 

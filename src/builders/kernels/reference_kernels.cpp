@@ -198,11 +198,11 @@ class Coder {
     const auto inside = hn::Min(hn::Max(position, hn::Zero(Doubles())), last_cell_);
     const auto cell = hn::DemoteTo(hn::FixedTag<std::int32_t, 4>(), inside);
     auto x = hn::PromoteTo(Words(), hn::BitCast(hn::FixedTag<std::uint32_t, 4>(), cell));
-    x = spread<32>(x, 0x001f00000000ffff);  // as spread_bits
-    x = spread<16>(x, 0x001f0000ff0000ff);
-    x = spread<8>(x, 0x100f00f00f00f00f);
-    x = spread<4>(x, 0x10c30c30c30c30c3);
-    x = spread<2>(x, 0x1249249249249249);
+    x = spread<32>(x, kSpreadMasks[0]);  // as spread_bits
+    x = spread<16>(x, kSpreadMasks[1]);
+    x = spread<8>(x, kSpreadMasks[2]);
+    x = spread<4>(x, kSpreadMasks[3]);
+    x = spread<2>(x, kSpreadMasks[4]);
     x = hn::Shl(x, places_);
     const hn::FixedTag<std::uint64_t, 2> half;
     const auto both = hn::Or(hn::LowerHalf(half, x), hn::UpperHalf(half, x));
